@@ -1,0 +1,140 @@
+"""The bus in memory: members of one process, no threads, no clock; the wires of tests and Monte-Carlo sweeps.
+
+Rules: links are physical, as over Zenoh: what a member publishes reaches the members linked to it and nobody else.
+Messages are handed on by reference; with `wire=True` every message goes through the codec, byte for byte as over Zenoh.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+from fnmatch import fnmatchcase
+
+from protocol.bus import Asked, BusEvent, Counters, Delivery, Lost, Publish, Seen
+from protocol.codec import Codec, Refusal
+from protocol.messages import Message
+
+
+class MemoryNetwork:
+    """The links of one run. `links` are undirected pairs of member names."""
+
+    def __init__(self, links: Iterable[tuple[str, str]], *, token: int = 0, wire: bool = False) -> None:
+        self.codec = Codec(token) if wire else None
+        self._linked: dict[str, dict[str, None]] = {}
+        self._members: dict[str, MemoryBus] = {}
+        for a, b in links:
+            self._linked.setdefault(a, {})[b] = None
+            self._linked.setdefault(b, {})[a] = None
+
+    def join(self, name: str) -> MemoryBus:
+        """Bring member `name` to life."""
+        bus = MemoryBus(self, name)
+        for other in self.peers(name):
+            self._members[other].inbox.append(Seen(name))
+            bus.inbox.append(Seen(other))
+        self._members[name] = bus
+        return bus
+
+    def kill(self, name: str) -> None:
+        """End member `name` as SIGKILL would: its peers see it `Lost`, what it sent before stays sent."""
+        if self._members.pop(name, None) is not None:
+            for other in self.peers(name):
+                self._members[other].inbox.append(Lost(name))
+
+    def peers(self, name: str) -> tuple[str, ...]:
+        """Living members that `name` is linked to, in the order of the declared links."""
+        return tuple(other for other in self._linked.get(name, ()) if other in self._members)
+
+    def member(self, name: str) -> MemoryBus:
+        """The living member `name`."""
+        return self._members[name]
+
+    def inject(self, name: str, key: str, frame: bytes) -> None:
+        """Give member `name` raw bytes under `key`, as a stranger on the wires would."""
+        self._members[name].take_frame(key, frame)
+
+
+class MemoryBus:
+    """One member's access to a `MemoryNetwork`; a `protocol.bus.Bus`."""
+
+    def __init__(self, network: MemoryNetwork, name: str) -> None:
+        self.name = name
+        self.counters = Counters()
+        self.inbox: deque[BusEvent] = deque()
+        self._network = network
+        self._subscriptions: dict[str, tuple[type[Message], ...]] = {}
+        self._resolved: dict[str, tuple[type[Message], ...]] = {}
+        self._served: dict[str, type[Message]] = {}
+
+    def publisher(self, key: str, *, reliable: bool) -> Publish:  # noqa: ARG002 - nothing is lost in memory
+        network, counters, name = self._network, self.counters, self.name
+        codec = network.codec
+
+        def publish(message: Message) -> None:
+            counters.sent += 1
+            for other in network.peers(name):
+                if codec is None:
+                    network.member(other).take(key, message)
+                else:
+                    network.member(other).take_frame(key, codec.encode(message))
+
+        return publish
+
+    def subscribe(self, key: str, *kinds: type[Message]) -> None:
+        self._subscriptions[key] = kinds
+        self._resolved.clear()
+
+    def serve(self, key: str, kind: type[Message]) -> None:
+        self._served[key] = kind
+
+    def ask(self, key: str, question: Message, timeout: float) -> Message | None:  # noqa: ARG002
+        replies: list[Message] = []
+        for other in self._network.peers(self.name):
+            self._network.member(other).be_asked(key, question, replies)
+        return replies[0] if replies else None
+
+    def be_asked(self, key: str, question: Message, replies: list[Message]) -> None:
+        """Queue a query that a peer asks."""
+        if any(fnmatchcase(key, pattern) for pattern in self._served):
+            self.inbox.append(Asked(key, question, replies.append))
+
+    def receive(self, timeout: float | None = 0) -> BusEvent | None:  # noqa: ARG002 - memory never makes one wait
+        return self.inbox.popleft() if self.inbox else None
+
+    def links(self) -> frozenset[str]:
+        return frozenset(self._network.peers(self.name))
+
+    def matched(self, key: str, names: Sequence[str]) -> bool:
+        return all(name in self._network.peers(self.name) and key is not None for name in names)
+
+    def close(self) -> None:
+        self._network.kill(self.name)
+
+    def take(self, key: str, message: Message) -> None:
+        """Receive a message from a peer if it is subscribed to."""
+        kinds = self._resolved.get(key)
+        if kinds is None:
+            kinds = self._resolve(key)
+        if not kinds:
+            return
+        if type(message) in kinds:
+            self.counters.received += 1
+            self.inbox.append(Delivery(key, message))
+        else:
+            self.counters.refused += 1
+
+    def take_frame(self, key: str, frame: bytes) -> None:
+        """Receive bytes from a peer or a stranger; only a network with `wire=True` carries bytes."""
+        codec = self._network.codec
+        if codec is None:
+            raise ValueError("this MemoryNetwork carries messages, not bytes: make it with wire=True")
+        message = codec.decode(frame)
+        if isinstance(message, Refusal):
+            self.counters.refused += 1
+        else:
+            self.take(key, message)
+
+    def _resolve(self, key: str) -> tuple[type[Message], ...]:
+        kinds = tuple(kind for pattern, ks in self._subscriptions.items() if fnmatchcase(key, pattern) for kind in ks)
+        self._resolved[key] = kinds
+        return kinds

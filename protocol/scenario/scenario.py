@@ -1,0 +1,103 @@
+"""A whole experiment as one frozen record, and the part of it that a robot may know.
+
+Rules: `Scenario` is complete, the graph included: two runs of one scenario are the same run. `RobotScenario` holds no
+source position, no plume, no true wind and no other robot's start: what a robot cannot know is not in its tables.
+"""
+
+from __future__ import annotations
+
+from hashlib import blake2b
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from protocol.scenario import sections as s
+
+Edge = tuple[int, int, float]  # (i, j, a_ij): robot i listens to robot j with weight a_ij
+
+
+class Scenario(s.Table, frozen=True):
+    """All that decides a run."""
+
+    seed: Annotated[int, Meta(ge=0, lt=2**63)] = 0
+    robots: s.Count = 5  # N
+    algorithm: str = "dcs"
+    topology: str = "ring"  # a name, or the path of a graph file
+    preset: Literal["corrected", "literal"] = "corrected"
+    case: Annotated[int, Meta(ge=0, le=9)] = 0  # of Table 4.6; 0: none
+    max_time: Annotated[float, Meta(gt=0, le=1e6)] = 1000.0  # simulated s; the thesis stops at 1000 or 1500
+    graph: tuple[Edge, ...] = ()  # the edges; filled in from `topology`
+    arena: s.Arena = s.Arena()
+    source: s.Source = s.Source()
+    wind: s.Wind = s.Wind()
+    plume: s.Plume = s.Plume()
+    sensors: s.Sensors = s.Sensors()
+    body: s.Body = s.Body()
+    start: s.Start = s.Start()
+    timing: s.Timing = s.Timing()
+    search: s.Search = s.Search()
+    decision: s.Decision = s.Decision()
+    fusion: s.Fusion = s.Fusion()
+    planning: s.Planning = s.Planning()
+    control: s.Control = s.Control()
+    simple: s.Simple = s.Simple()
+    repulsion: s.Repulsion = s.Repulsion()
+    cfpso: s.Cfpso = s.Cfpso()
+    dcs: s.Dcs = s.Dcs()
+    network: s.Network = s.Network()
+
+
+class RobotScenario(s.Table, frozen=True):
+    """What robot `robot` may know of the scenario: itself, its own row of the graph, and the parameters of the laws."""
+
+    robot: int
+    robots: int
+    seed: int
+    algorithm: str
+    row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it listens to
+    linked: tuple[int, ...]  # robots that it has a link with, in either direction
+    max_degree: float  # largest row sum of the graph: bounds the step of the consensus laws
+    arena: s.Arena
+    body: s.Body
+    timing: s.Timing
+    search: s.Search
+    decision: s.Decision
+    fusion: s.Fusion
+    planning: s.Planning
+    control: s.Control
+    simple: s.Simple
+    repulsion: s.Repulsion
+    cfpso: s.Cfpso
+    dcs: s.Dcs
+    network: s.Network
+
+
+def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:
+    """Robots that share a physical link with robot `i`: those it listens to and those that listen to it."""
+    heard = {j for a, j, _ in graph if a == i}
+    return tuple(sorted((heard | {a for a, j, _ in graph if j == i}) - {i}))
+
+
+def robot_view(scenario: Scenario, i: int) -> RobotScenario:
+    """What robot `i` may know of `scenario`."""
+    row = tuple(sorted((j, a_ij) for k, j, a_ij in scenario.graph if k == i))
+    degrees = [sum(a for k, _, a in scenario.graph if k == j) for j in range(scenario.robots)]
+    tables = ("arena", "body", "timing", "search", "decision", "fusion", "planning", "control", "simple", "repulsion",
+              "cfpso", "dcs", "network")  # fmt: skip
+    return RobotScenario(
+        robot=i,
+        robots=scenario.robots,
+        seed=scenario.seed,
+        algorithm=scenario.algorithm,
+        row=row,
+        linked=linked_to(scenario.graph, i),
+        max_degree=max(degrees, default=0.0),
+        **{name: getattr(scenario, name) for name in tables},
+    )
+
+
+def scenario_digest(scenario: Scenario) -> str:
+    """16 hex digits that name all that decides the run; the wires do not."""
+    decisive = msgspec.structs.replace(scenario, network=s.Network())
+    return blake2b(msgspec.json.encode(decisive, order="deterministic"), digest_size=8).hexdigest()
