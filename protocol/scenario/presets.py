@@ -20,6 +20,7 @@ LITERAL: dict[str, object] = {
     "control.relay": False,
     "repulsion.form": "switch",
     "cfpso.repulsion": False,
+    "dcs.repulsion": False,
     "dcs.order": "algorithm-2",
     "dcs.sectors": 5,
     "dcs.turn": 0.1,

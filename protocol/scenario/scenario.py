@@ -20,7 +20,7 @@ Edge = tuple[int, int, float]  # (i, j, a_ij): robot i listens to robot j with w
 class Scenario(s.Table, frozen=True):
     """All that decides a run."""
 
-    seed: Annotated[int, Meta(ge=0, lt=2**63)] = 0
+    seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
     robots: s.Count = 5  # N
     algorithm: str = "dcs"
     topology: str = "ring"  # a name, or the path of a graph file
@@ -46,6 +46,7 @@ class Scenario(s.Table, frozen=True):
     cfpso: s.Cfpso = s.Cfpso()
     dcs: s.Dcs = s.Dcs()
     network: s.Network = s.Network()
+    recording: s.Recording = s.Recording()
 
 
 class RobotScenario(s.Table, frozen=True):
@@ -58,6 +59,7 @@ class RobotScenario(s.Table, frozen=True):
     row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it listens to
     linked: tuple[int, ...]  # robots that it has a link with, in either direction
     max_degree: float  # largest row sum of the graph: bounds the step of the consensus laws
+    complete: bool  # everyone hears everyone: positions need no relaying
     arena: s.Arena
     body: s.Body
     timing: s.Timing
@@ -82,7 +84,9 @@ def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:
 def robot_view(scenario: Scenario, i: int) -> RobotScenario:
     """What robot `i` may know of `scenario`."""
     row = tuple(sorted((j, a_ij) for k, j, a_ij in scenario.graph if k == i))
-    degrees = [sum(a for k, _, a in scenario.graph if k == j) for j in range(scenario.robots)]
+    degrees: dict[int, float] = {}
+    for k, _, a_kj in scenario.graph:
+        degrees[k] = degrees.get(k, 0.0) + a_kj
     tables = ("arena", "body", "timing", "search", "decision", "fusion", "planning", "control", "simple", "repulsion",
               "cfpso", "dcs", "network")  # fmt: skip
     return RobotScenario(
@@ -92,12 +96,13 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
         algorithm=scenario.algorithm,
         row=row,
         linked=linked_to(scenario.graph, i),
-        max_degree=max(degrees, default=0.0),
+        max_degree=max(degrees.values(), default=0.0),
+        complete=len(scenario.graph) == scenario.robots * (scenario.robots - 1),
         **{name: getattr(scenario, name) for name in tables},
     )
 
 
 def scenario_digest(scenario: Scenario) -> str:
-    """16 hex digits that name all that decides the run; the wires do not."""
-    decisive = msgspec.structs.replace(scenario, network=s.Network())
+    """16 hex digits that name all that decides the run; neither the wires nor the recording do."""
+    decisive = msgspec.structs.replace(scenario, network=s.Network(), recording=s.Recording())
     return blake2b(msgspec.json.encode(decisive, order="deterministic"), digest_size=8).hexdigest()

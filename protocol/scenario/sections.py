@@ -194,6 +194,8 @@ class Dcs(Table, frozen=True):
     sectors: Annotated[int, Meta(ge=0, le=1000)] = 0  # h_i at 2 pi i / sectors; 0: N (the thesis prints 5)
     circle: Positive = 10.0  # r of the circular motion, m
     turn: Positive = 0.06  # omega_0, rad/s; printed 0.1 asks r omega_0 = 1.0 m/s of robots that do 0.8
+    repulsion: bool = True  # (3.35) added; the thesis has no collision avoidance here
+    clearance: Positive = 2.0  # its d for this law, m: below the spacing of the formation
     order: Literal["algorithm-5", "algorithm-2"] = "algorithm-5"  # lost -> circular, or as Algorithm 2 prints it
 
 
@@ -214,3 +216,10 @@ class Network(Table, frozen=True):
     endpoints: tuple[str, ...] = ()  # world's first, then each robot's; empty: made by the launcher
     lease_ms: Annotated[int, Meta(ge=100, le=60000)] = 400  # a silent link is dead after this
     join_timeout: Positive = 30.0  # wall-clock s for the swarm to link up
+
+
+class Recording(Table, frozen=True):
+    """What the recorder is told; it changes nothing of the run."""
+
+    truth_period: Positive = 0.1  # between two states of the robots, simulated s
+    field_period: Positive = 0.5  # between two pictures of plume and wind, simulated s

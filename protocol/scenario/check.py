@@ -1,0 +1,142 @@
+"""Checks between values: each value is allowed by its type already, here they must fit together.
+
+Rules: a check returns one sentence or nothing and knows nothing of files; `check` puts the place in front of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from math import dist
+
+from protocol.errors import ScenarioError
+from protocol.scenario.scenario import Scenario
+from protocol.scenario.settings import placed
+from protocol.topology.graph import fault_in
+
+APART = 0.4  # least distance of two centres at the start, m: a P3-DX is 0.381 m wide
+_NO_ORIGINS: Mapping[str, str] = {}
+
+Fault = tuple[str, tuple[str, ...]]  # a sentence without its place, and the values that it is about
+
+
+def check(scenario: Scenario, origins: Mapping[str, str] = _NO_ORIGINS) -> Scenario:
+    """`scenario` itself when its values fit together.
+
+    Args:
+        origins: where each value was given (dotted name -> file or flag), for the sentence.
+    Raises: ScenarioError.
+    """
+    for find in CHECKS:
+        for sentence, paths in find(scenario):
+            raise ScenarioError(placed(sentence, origins, *paths))
+    return scenario
+
+
+def _arena(scenario: Scenario) -> Iterator[Fault]:
+    arena = scenario.arena
+    for axis, low, high in (("x", arena.x_min, arena.x_max), ("y", arena.y_min, arena.y_max)):
+        if low >= high:
+            paths = (f"arena.{axis}_min", f"arena.{axis}_max")
+            yield f"{paths[0]} is {low:g} and {paths[1]} is {high:g}; the first must be less than the second.", paths
+
+
+def _source(scenario: Scenario) -> Iterator[Fault]:
+    x, y = scenario.source.x, scenario.source.y
+    if not _inside(scenario, x, y):
+        where_to = _arena_words(scenario)
+        yield f"the source is at ({x:g}, {y:g}); it must be inside the arena, {where_to}.", ("source.x", "source.y")
+
+
+def _start(scenario: Scenario) -> Iterator[Fault]:
+    points, n = scenario.start.positions, scenario.robots
+    if not points:
+        yield from _column(scenario)
+        return
+    if len(points) != n:
+        paths = ("start.positions", "robots")
+        yield f"start.positions has {_count(len(points), 'point')}; it must have one per robot, {n}.", paths
+        return
+    for i, (x, y) in enumerate(points):
+        if not _inside(scenario, x, y):
+            yield (
+                f"robot {i} starts at ({x:g}, {y:g}); it must be inside the arena, {_arena_words(scenario)}.",
+                ("start.positions",),
+            )
+        for j in range(i):
+            if (gap := dist(points[i], points[j])) < APART:
+                yield (
+                    f"robots {j} and {i} start {gap:.3g} m apart; they must be at least {APART} m apart.",
+                    ("start.positions",),
+                )
+
+
+def _column(scenario: Scenario) -> Iterator[Fault]:
+    """The column upwards from (start.x, start.y); what is too many for it stands in further columns, towards -x."""
+    start, n, arena = scenario.start, scenario.robots, scenario.arena
+    if not _inside(scenario, start.x, start.y):
+        yield (
+            f"the robots start from ({start.x:g}, {start.y:g}); it must be inside the arena, {_arena_words(scenario)}.",
+            ("start.x", "start.y"),
+        )
+    per_column = int((arena.y_max - start.y) // start.spacing) + 1
+    columns = -(-n // per_column)
+    if start.x - (columns - 1) * start.spacing < arena.x_min:
+        most = per_column * (int((start.x - arena.x_min) // start.spacing) + 1)
+        yield (
+            f"robots is {n}; it must be at most {most} to start in columns from ({start.x:g}, {start.y:g}),"
+            f" {start.spacing:g} m apart, or give start.positions.",
+            ("robots", "start.x", "start.y", "start.spacing"),
+        )
+
+
+def _timing(scenario: Scenario) -> Iterator[Fault]:
+    timing = scenario.timing
+    for whole, part, values in (
+        ("timing.tick", "timing.substep", (timing.tick, timing.substep)),
+        ("timing.decision", "timing.tick", (timing.decision, timing.tick)),
+    ):
+        ratio = values[0] / values[1]
+        if round(ratio) < 1 or abs(ratio - round(ratio)) > 1e-6:
+            yield (
+                f"{whole} is {values[0]:g}; it must be a whole multiple of {part}, which is {values[1]:g}.",
+                (whole, part),
+            )
+    if scenario.max_time < timing.tick:
+        yield (
+            f"max_time is {scenario.max_time:g}; it must be at least one tick, {timing.tick:g} s.",
+            ("max_time", "timing.tick"),
+        )
+
+
+def _network(scenario: Scenario) -> Iterator[Fault]:
+    given, wanted = len(scenario.network.endpoints), scenario.robots + 1
+    if given not in (0, wanted):
+        yield (
+            f"network.endpoints has {_count(given, 'entry')}; it must be empty or have {wanted}, the world's first and"
+            " then one per robot.",
+            ("network.endpoints", "robots"),
+        )
+
+
+def _graph(scenario: Scenario) -> Iterator[Fault]:
+    fault = fault_in(scenario.robots, scenario.graph)
+    if fault is not None:
+        yield f"graph: {fault}.", ("graph", "robots")
+
+
+CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (_arena, _source, _start, _timing, _network, _graph)
+
+
+def _inside(scenario: Scenario, x: float, y: float) -> bool:
+    arena = scenario.arena
+    return arena.x_min <= x <= arena.x_max and arena.y_min <= y <= arena.y_max
+
+
+def _arena_words(scenario: Scenario) -> str:
+    arena = scenario.arena
+    return f"x from {arena.x_min:g} to {arena.x_max:g} and y from {arena.y_min:g} to {arena.y_max:g}"
+
+
+def _count(n: int, noun: str) -> str:
+    plural = noun[:-1] + "ies" if noun.endswith("y") else noun + "s"
+    return f"{n} {noun if n == 1 else plural}"

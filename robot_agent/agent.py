@@ -1,0 +1,146 @@
+"""One robot: from a reading to what it tells its neighbours, and from what it hears to what it drives.
+
+Rules: pure; a tick is `sense(reading)` and then `act(heard)`, in this order, once each. The same object runs in a
+process of its own over Zenoh and beside others in memory, bit for bit alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from protocol.messages import Belief, Drive, Reading, Shared
+from protocol.scenario import RobotScenario
+from robot_agent.algorithms import algorithm
+from robot_agent.group import Group
+from robot_agent.hand import Own, wheel_torques
+from robot_agent.interfaces import Plan
+from robot_agent.neighbours import Neighbours
+from robot_agent.planning.search import CrosswindSearch
+
+
+class Agent:
+    """The belief of robot `scenario.robot`."""
+
+    def __init__(self, scenario: RobotScenario) -> None:
+        parts = algorithm(scenario.algorithm)
+        self.robot = scenario.robot
+        self._s = scenario
+        self._decision = parts.decision(scenario)
+        self._planner = parts.planner(scenario)
+        self._controller = parts.controller(scenario)
+        self._search = CrosswindSearch(scenario)
+        self._group = Group()
+        self._neighbours = Neighbours(scenario)
+        self._dt = scenario.timing.tick
+        self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
+        self._own: Own | None = None
+        self._begun = False
+        self._detected = False
+        self._plan: Plan | None = None
+
+    @property
+    def decision_due(self) -> bool:
+        """Whether the tick that was sensed last is one of decision."""
+        return self._own is not None and self._own.tick % self._ticks_per_decision == 0
+
+    @property
+    def estimate(self) -> tuple[float, float] | None:
+        """The decided position of the source h^ic, m; None before the first detection in the group."""
+        return self._decision.h if self._begun else None
+
+    def sense(self, reading: Reading) -> Shared:
+        """Take a reading; what to tell the neighbours at this tick."""
+        own = self._own = Own(reading, self._s.body)
+        if reading.wind_past:
+            self._decision.prefill(reading)
+        if self.decision_due:
+            self._decision.record(own)
+            self._detected = own.concentration > self._s.decision.threshold
+            if self._detected:
+                self._group.detect(own.t, own.concentration, own.x, own.y)
+                self._decision.detect(own)
+                self._begin(own)
+            if not self._group.started:
+                self._plan = self._search.plan(own, self._group)
+        group, (fusion_x, fusion_y), (h_x, h_y) = self._group, self._decision.state, self._decision.h
+        return Shared(
+            self.robot,
+            own.tick,
+            own.x,
+            own.y,
+            own.vx,
+            own.vy,
+            fusion_x,
+            fusion_y,
+            group.first_detected_at,
+            group.detected_at,
+            group.best,
+            group.best_x,
+            group.best_y,
+            group.leg,
+            group.leg_by,
+            group.heading[0],
+            group.heading[1],
+            h_x,
+            h_y,
+            self._neighbours.nearby(own.tick, own.x, own.y),
+        )
+
+    def act(self, heard: Iterable[Shared]) -> Drive:
+        """Take the neighbours' states of this tick; the torques to drive with until the next."""
+        own = self._own
+        if own is None:
+            raise RuntimeError("act() needs a reading first: call sense()")
+        neighbours, group = self._neighbours, self._group
+        heard = list(heard)
+        neighbours.hear(own.tick, heard)
+        for state in heard:
+            group.merge(state)
+        if group.started:
+            self._begin(own)
+            if self.decision_due or self._plan is None:
+                self._decision.decide(own, group, self._detected)
+                lost = group.lost(own.t, self._s.decision.lost_after)
+                self._plan = self._planner.plan(own, self._decision.h, lost)
+            self._decision.advance(neighbours.fresh, self._dt)
+        else:
+            # The heading may have changed by what was heard in this very tick.
+            self._plan = self._search.plan(own, group)
+        u = self._controller.control(own, neighbours.fresh, neighbours.others(own.tick), self._plan, self._dt)
+        tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
+        return Drive(self.robot, own.tick, tau_left, tau_right)
+
+    def belief(self, links: tuple[int, ...], dropped: int, refused: int) -> Belief:
+        """What the robot thinks after `act`, for the recorder."""
+        own, plan, decision = self._own, self._plan, self._decision
+        if own is None or plan is None:
+            raise RuntimeError("belief() needs a tick first: call sense() and act()")
+        return Belief(
+            robot=self.robot,
+            tick=own.tick,
+            t=own.t,
+            mode=plan.mode,
+            has_estimate=self._begun,
+            h_x=decision.h[0],
+            h_y=decision.h[1],
+            x_hat_x=decision.estimate.x,
+            x_hat_y=decision.estimate.y,
+            variance=decision.estimate.P,
+            fusion_x=decision.state[0],
+            fusion_y=decision.state[1],
+            target_x=plan.target[0],
+            target_y=plan.target[1],
+            detected_at=self._group.detected_at,
+            heard=tuple(s.robot for _, s in self._neighbours.fresh),
+            links=links,
+            dropped=dropped,
+            refused=refused,
+        )
+
+    def _begin(self, own: Own) -> None:
+        if not self._begun:
+            self._begun = True
+            self._plan = None  # the search is over
+            self._decision.begin(own)
+
+

@@ -1,0 +1,91 @@
+"""The consensus-based finite-time law of chapter 5 (DCS), Algorithm 2.
+
+Thesis (5.5), parallel motion:  u_i = v_ic' + phi_i + sig(phi_i)^alpha,
+    phi_i = sum_j a_ij (beta ((x_j - h_j) - (x_i - h_i)) + gamma (v_j - v_i)) + lambda (v_ic - v_i)
+and (5.7), circular motion:  u_i = h_i'' + phi_i + sig(phi_i)^alpha,
+    phi_i = sum_j a_ij (beta ((x_j - h_j) - (x_i - h_i)) + gamma ((v_j - h_j') - (v_i - h_i')))
+            + lambda_1 (h_i' - v_i) + lambda_2 (h^ic - (x_i - h_i)),   h_i = r (cos theta_i, sin theta_i).
+
+Departs from the thesis: the circular motion belongs to a lost plume (`dcs.order`; Algorithm 2 prints it the other way
+round than the text and Algorithm 5); h_i at 2 pi i / N (`dcs.sectors`); theta_i = 2 pi i / N + omega_0 t by the common
+simulated time, so that no phase has to be agreed; omega_0 such that r omega_0 can be driven (`dcs.turn`); (3.35) is
+added when somebody is within `dcs.clearance` (`dcs.repulsion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, pi, sin
+
+from msgspec.structs import replace
+
+from protocol.scenario import RobotScenario
+from robot_agent.control.repulsion import keep_clear
+from robot_agent.hand import Own, top_acceleration
+from robot_agent.interfaces import LOST, SEARCH, Fresh, Plan, Point
+from robot_agent.neighbours import Placed
+from robot_agent.sig import STEPS
+
+
+class DcsControl:
+    """(5.5) while the group traces, (5.7) while it is lost."""
+
+    def __init__(self, scenario: RobotScenario) -> None:
+        p = scenario.dcs
+        self._p = p
+        self._robots = scenario.robots
+        self._me = scenario.robot
+        self._potential = replace(scenario.repulsion, d=p.clearance)
+        self._top = top_acceleration(scenario.body)
+        sectors = p.sectors or scenario.robots
+        # h_i of Table 5.3; robots are numbered from 1 in the thesis.
+        self._h = [
+            (p.radius * cos(2 * pi * i / sectors + pi / 6), p.radius * sin(2 * pi * i / sectors + pi / 6))
+            for i in range(1, scenario.robots + 1)
+        ]
+        self._K = 2.0 * scenario.max_degree * p.gamma
+        self._step = STEPS[scenario.control.step]
+
+    def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
+        circular = plan.mode == LOST if self._p.order == "algorithm-5" else plan.mode not in (LOST, SEARCH)
+        u = self._circle(own, fresh, plan, dt) if circular else self._parallel(own, fresh, plan, dt)
+        return keep_clear(u, own, others, self._potential, self._top) if self._p.repulsion else u
+
+    def _parallel(self, own: Own, fresh: Fresh, plan: Plan, dt: float) -> Point:
+        p = self._p
+        beta, gamma, lam = p.beta, p.gamma, p.lam
+        h_x, h_y = self._h[self._me]
+        x, y = own.x - h_x, own.y - h_y
+        phi_x = lam * (plan.v_c[0] - own.vx)
+        phi_y = lam * (plan.v_c[1] - own.vy)
+        for a_ij, s in fresh:
+            h_jx, h_jy = self._h[s.robot]
+            phi_x += a_ij * (beta * (s.x - h_jx - x) + gamma * (s.vx - own.vx))
+            phi_y += a_ij * (beta * (s.y - h_jy - y) + gamma * (s.vy - own.vy))
+        dt_k = dt * (self._K + lam)
+        return self._step(phi_x, 1.0, 1.0, p.alpha, dt_k), self._step(phi_y, 1.0, 1.0, p.alpha, dt_k)
+
+    def _circle(self, own: Own, fresh: Fresh, plan: Plan, dt: float) -> Point:
+        p = self._p
+        beta, gamma = p.beta, p.gamma
+        h_x, h_y, hd_x, hd_y = self._orbit(self._me, own.t)
+        x, y, vx, vy = own.x - h_x, own.y - h_y, own.vx - hd_x, own.vy - hd_y
+        phi_x = p.lam2 * (plan.centre[0] - x) - p.lam1 * vx
+        phi_y = p.lam2 * (plan.centre[1] - y) - p.lam1 * vy
+        for a_ij, s in fresh:
+            h_jx, h_jy, hd_jx, hd_jy = self._orbit(s.robot, own.t)
+            phi_x += a_ij * (beta * (s.x - h_jx - x) + gamma * (s.vx - hd_jx - vx))
+            phi_y += a_ij * (beta * (s.y - h_jy - y) + gamma * (s.vy - hd_jy - vy))
+        dt_k = dt * (self._K + p.lam1)
+        w2 = p.turn**2
+        return (
+            self._step(phi_x, 1.0, 1.0, p.alpha, dt_k) - w2 * h_x,
+            self._step(phi_y, 1.0, 1.0, p.alpha, dt_k) - w2 * h_y,
+        )
+
+    def _orbit(self, i: int, t: float) -> tuple[float, float, float, float]:
+        """h_i and h_i' of (5.6) at time t."""
+        p = self._p
+        theta = 2.0 * pi * (i + 1) / self._robots + p.turn * t
+        h_x, h_y = p.circle * cos(theta), p.circle * sin(theta)
+        return h_x, h_y, -p.turn * h_y, p.turn * h_x

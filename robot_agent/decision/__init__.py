@@ -1,0 +1,1 @@
+"""Decision algorithms: where is the source? One file each."""

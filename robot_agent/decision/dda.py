@@ -1,0 +1,81 @@
+"""The distributed decision algorithm (DDA).
+
+Thesis chapter 3, Algorithm 1: measurement (3.9), Kalman filter (3.11)-(3.17), fusion (3.26), and the decision
+(3.31)  h^ic = c_1 y_i + c_2 p_hat_i  with the oscillation centre p_hat of (2.4).
+"""
+
+from __future__ import annotations
+
+from protocol.messages import Reading
+from protocol.randomness import rng_for
+from protocol.scenario import RobotScenario
+from robot_agent import fusion, kalman
+from robot_agent.group import Group
+from robot_agent.hand import Own
+from robot_agent.interfaces import Fresh, Point
+from robot_agent.measurement import WindMemory, measure
+
+
+class DistributedDecision:
+    """One robot's part of the DDA."""
+
+    def __init__(self, scenario: RobotScenario) -> None:
+        self._s = scenario
+        self._winds = WindMemory(scenario.decision.memory)
+        self._best_own = (0.0, 0.0, 0.0)  # concentration and x_l of (2.3)
+        self._input: Point | None = None
+        self._R = scenario.decision.sigma2
+        self._k = 0  # decisions since the start of the mission
+        self.state: Point = (0.0, 0.0)
+        self.h: Point = (0.0, 0.0)
+        self.estimate = kalman.Estimate(0.0, 0.0, scenario.decision.initial_variance)
+
+    def prefill(self, reading: Reading) -> None:
+        """Take the wind that was recorded before the start."""
+        self._winds.prefill(reading.wind_past)
+
+    def record(self, own: Own) -> None:
+        self._winds.record((own.wind_x, own.wind_y))
+        self._k += 1
+        if self._s.decision.noise == "model":
+            self._R = kalman.model_noise(self._s.decision.sigma2, own.t)
+        else:
+            self._R = kalman.printed_noise(self._R, own.t)
+
+    def begin(self, own: Own) -> None:
+        self.state = self.h = (own.x, own.y)
+        self.estimate = kalman.Estimate(own.x, own.y, self._s.decision.initial_variance)
+
+    def detect(self, own: Own) -> None:
+        if own.concentration > self._best_own[0]:
+            self._best_own = (own.concentration, own.x, own.y)
+
+    def decide(self, own: Own, group: Group, detected: bool) -> None:
+        d = self._s.decision
+        z: Point | None = None
+        if detected:
+            sums = self._winds.displacements(self._s.timing.decision)
+            z = measure(own.x, own.y, sums, d, self._s.arena, (self.estimate.x, self.estimate.y))
+        self.estimate = kalman.update(kalman.predict(self.estimate, d.process_noise), z, self._R)
+        measured = z is not None or self._s.fusion.input == "always"
+        self._input = (self.estimate.x, self.estimate.y) if measured else None
+        p_hat = self._oscillation_centre(group)
+        c1, c2 = d.c1, 1.0 - d.c1
+        self.h = (c1 * self.state[0] + c2 * p_hat[0], c1 * self.state[1] + c2 * p_hat[1])
+
+    def advance(self, fresh: Fresh, dt: float) -> None:
+        # A neighbour that has not heard of the first detection has no fusion state yet.
+        others = [(a_ij, s.fusion_x, s.fusion_y) for a_ij, s in fresh if s.first_detected_at >= 0.0]
+        self.state = fusion.step(self.state, others, self._input, self._s.fusion, self._s.max_degree, dt)
+
+    def _oscillation_centre(self, group: Group) -> Point:
+        """p_hat_i = (alpha_1 x_l + alpha_2 x_g) / (alpha_1 + alpha_2), (2.4); x_g alone before an own detection."""
+        x_g = (group.best_x, group.best_y)
+        if self._best_own[0] <= 0.0:
+            return x_g
+        draws = rng_for(self._s.seed, "pso", self._s.robot, self._k)
+        alpha1 = draws.uniform()
+        alpha2 = 1.0 - draws.uniform()  # in (0, 1]: the sum is never 0
+        _, x, y = self._best_own
+        total = alpha1 + alpha2
+        return (alpha1 * x + alpha2 * x_g[0]) / total, (alpha1 * y + alpha2 * x_g[1]) / total

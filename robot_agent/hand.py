@@ -1,0 +1,61 @@
+"""The hand position: the point L ahead of the wheel axis, which moves as a double integrator (1.7).
+
+Thesis section 1.1.3, (1.8)-(1.12).
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from protocol.messages import Reading
+from protocol.scenario.sections import Body
+
+
+class Own:
+    """What a robot knows of its own motion at one tick, in hand coordinates, and what it senses there."""
+
+    __slots__ = ("concentration", "nu", "omega", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
+
+    def __init__(self, reading: Reading, body: Body) -> None:
+        L = body.hand
+        c, s = cos(reading.theta), sin(reading.theta)
+        nu, omega = reading.nu, reading.omega
+        self.tick = reading.tick
+        self.t = reading.t
+        self.theta = reading.theta
+        self.nu = nu
+        self.omega = omega
+        self.x = reading.x + L * c  # (1.8)
+        self.y = reading.y + L * s
+        self.vx = nu * c - L * omega * s  # (1.9)
+        self.vy = nu * s + L * omega * c
+        self.wind_x = reading.wind_x
+        self.wind_y = reading.wind_y
+        self.concentration = reading.concentration
+
+
+def wheel_torques(ux: float, uy: float, own: Own, body: Body) -> tuple[float, float]:
+    """Wheel torques that give the hand the acceleration u while nothing saturates.
+
+    Thesis (1.10): p = B^-1 [u - (-nu omega sin - L omega^2 cos, nu omega cos - L omega^2 sin)], p = (F, tau);
+    (1.11), (1.12): tau_l,r = J_wheel/b (F/m -+ tau l / (2 J)).
+
+    Args:
+        ux, uy: hand acceleration u_i, m/s^2.
+    Returns:
+        tau_left, tau_right, N m, not yet limited: the body clips them.
+    """
+    L, nu, omega = body.hand, own.nu, own.omega
+    c, s = cos(own.theta), sin(own.theta)
+    bx = ux + nu * omega * s + L * omega * omega * c
+    by = uy - nu * omega * c + L * omega * omega * s
+    forward = c * bx + s * by  # F / m
+    turn = (c * by - s * bx) / L  # tau / J
+    scale = body.wheel_inertia / body.wheel_radius
+    half = 0.5 * body.axle * turn
+    return scale * (forward - half), scale * (forward + half)
+
+
+def top_acceleration(body: Body) -> float:
+    """Largest forward acceleration that the wheels can give, m/s^2."""
+    return body.max_torque * body.wheel_radius / body.wheel_inertia

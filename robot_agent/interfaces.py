@@ -1,0 +1,79 @@
+"""The interface of an algorithm: a decision (where is the source?), a planner (where to go?), a controller (how?).
+
+Rules: each part is made from the robot's scenario; it is given what the robot knows and returns plain values; it never
+sees a message it was not allowed to hear. A new algorithm is one new file for what is new in it and one line in
+`robot_agent.algorithms`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from protocol.messages import Reading, Shared
+from robot_agent.group import Group
+from robot_agent.hand import Own
+from robot_agent.kalman import Estimate
+from robot_agent.neighbours import Placed
+
+Point = tuple[float, float]
+Fresh = Sequence[tuple[float, Shared]]  # (a_ij, state) of the neighbours that count now
+
+SEARCH, TRACE, LOST = "search", "trace", "lost"
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Where to go until the next decision."""
+
+    mode: str  # SEARCH | TRACE | LOST
+    target: Point  # p_i, m
+    p_dot: Point = (0.0, 0.0)  # its velocity, m/s
+    p_ddot: Point = (0.0, 0.0)  # its acceleration, m/s^2
+    v_c: Point = (0.0, 0.0)  # reference velocity v_c^i, m/s
+    centre: Point = (0.0, 0.0)  # decision h^ic, the centre of circular motion, m
+
+
+class Decision(Protocol):
+    """Makes h^ic, the decided position of the source."""
+
+    state: Point  # what travels to the neighbours as the fusion state
+    h: Point
+    estimate: Estimate
+
+    def prefill(self, reading: Reading) -> None:
+        """Take the wind that was recorded before the start."""
+        ...
+
+    def record(self, own: Own) -> None:
+        """At every decision instant from the start on: remember what is sensed."""
+        ...
+
+    def begin(self, own: Own) -> None:
+        """Someone has detected the odour for the first time."""
+        ...
+
+    def detect(self, own: Own) -> None:
+        """This robot detects the odour now."""
+        ...
+
+    def decide(self, own: Own, group: Group, detected: bool) -> None:
+        """At every decision instant after `begin`."""
+        ...
+
+    def advance(self, fresh: Fresh, dt: float) -> None:
+        """At every tick after `begin`: exchange with the neighbours."""
+        ...
+
+
+class Planner(Protocol):
+    """Makes a plan from the decision."""
+
+    def plan(self, own: Own, h: Point, lost: bool) -> Plan: ...
+
+
+class Controller(Protocol):
+    """Makes the control signal u_i of (1.7) from the plan, at every tick."""
+
+    def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point: ...

@@ -1,0 +1,1 @@
+"""Planners: where to go, given the decision? One file each."""

@@ -1,0 +1,166 @@
+"""A robot as a process: `python -m robot_agent`, or `odourswarm robot`.
+
+Rules: this shell owns the wires and waits; what the robot thinks is in `Agent`, how it keeps in step in `RobotSession`.
+Every wait ends when the world or the neighbour waited for is gone, or when it takes too long.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import msgspec
+
+from protocol import keys
+from protocol.bus import Bus, Delivery, Lost
+from protocol.scenario.place import RobotPlace
+from protocol.errors import ScenarioError, SwarmFailure
+from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
+from protocol.scenario import RobotScenario
+from protocol.zenoh_bus import ZenohBus, token_of
+from robot_agent.agent import Agent
+from robot_agent.report import report
+from robot_agent.session import RobotSession
+
+LINK_POLL = 0.01  # s between two looks at the links while the swarm comes up
+ASK_TIMEOUT = 2.0  # s for one query
+FAREWELL = 2.0  # s that a robot waits for the world to close after its report
+
+
+def ask_place(run: str, robot: int, world: str, timeout: float) -> RobotPlace:
+    """Ask the world at endpoint `world` what robot `robot` may know and where its neighbours are."""
+    bus = ZenohBus(run, f"guest/{robot}", token_of(run), listen=(), connect=(world,))
+    try:
+        deadline = time.monotonic() + timeout
+        while time.monotonic() < deadline:
+            answer = bus.ask(keys.SCENARIO, Ask(robot), ASK_TIMEOUT)
+            if isinstance(answer, Answer):
+                if not answer.ok:
+                    raise ScenarioError(answer.text)
+                return msgspec.json.decode(answer.text, type=RobotPlace)
+            time.sleep(LINK_POLL)
+    finally:
+        bus.close()
+    raise SwarmFailure(
+        f"no world of run {run!r} answered at {world} within {timeout:g} s; start it first with `odourswarm world`."
+    )
+
+
+@dataclass(slots=True)
+class RobotProcess:
+    """One robot on the wires, from its first link to its last word."""
+
+    run: str
+    place: RobotPlace
+    say: Callable[[str], None] = lambda _: None
+
+    def serve(self) -> None:
+        """Join the run, take part until the world halts it, leave.
+
+        Raises:
+            SwarmFailure: the swarm did not link up, or the world is gone.
+        """
+        view = self.place.scenario
+        me = keys.robot_name(view.robot)
+        lower = [j for j in view.linked if j < view.robot]
+        connect = (self.place.world, *(self.place.robots[j] for j in lower))
+        bus = ZenohBus(
+            self.run,
+            me,
+            token_of(self.run),
+            listen=(self.place.robots[view.robot],),
+            connect=connect,
+            lease_ms=view.network.lease_ms,
+        )
+        try:
+            session, last_word = self._prepare(bus, view)
+            self._link_up(bus, view)
+            self._take_part(bus, session, last_word)
+        finally:
+            bus.close()
+
+    def _prepare(self, bus: Bus, view: RobotScenario) -> tuple[RobotSession, Callable[[Report], None]]:
+        i = view.robot
+        bus.subscribe(keys.robot(i, keys.READING), Reading)
+        bus.subscribe(keys.HALT, Halt)
+        for j, _ in view.row:
+            bus.subscribe(keys.robot(j, keys.SHARED), Shared)
+        tell = bus.publisher(keys.robot(i, keys.SHARED), reliable=True)
+        drive = bus.publisher(keys.robot(i, keys.DRIVE), reliable=True)
+        last_word = bus.publisher(keys.robot(i, keys.REPORT), reliable=True)
+        agent = Agent(view)
+        watched = _Watched(bus, agent, bus.publisher(keys.robot(i, keys.BELIEF), reliable=False), drive)
+        return RobotSession(agent, tell, watched.drive), last_word
+
+    def _link_up(self, bus: Bus, view: RobotScenario) -> None:
+        """Wait until the declared links are the actual ones and say so to the world."""
+        declared = {keys.WORLD, *(keys.robot_name(j) for j in view.linked)}
+        listeners = [keys.robot_name(j) for j in view.linked]
+        deadline = time.monotonic() + view.network.join_timeout
+        while True:
+            actual = bus.links()
+            linked = {name for name in actual if name == keys.WORLD or keys.robot_of(name) is not None}
+            ready = bus.matched(keys.robot(view.robot, keys.DRIVE), (keys.WORLD,)) and (
+                not listeners or bus.matched(keys.robot(view.robot, keys.SHARED), listeners)
+            )
+            if linked == declared and ready:
+                links = tuple(sorted(j for name in linked if (j := keys.robot_of(name)) is not None))
+                answer = bus.ask(keys.robot(view.robot, keys.JOIN), Join(view.robot, links), ASK_TIMEOUT)
+                if isinstance(answer, Answer):
+                    if answer.ok:
+                        return
+                    raise SwarmFailure(f"robot {view.robot}: the world refuses to let it join: {answer.text}")
+            if time.monotonic() > deadline:
+                missing, extra = sorted(declared - linked), sorted(linked - declared)
+                raise SwarmFailure(
+                    f"robot {view.robot}: after {view.network.join_timeout:g} s its links differ from the graph: "
+                    f"missing {', '.join(missing) or 'none'}, undeclared {', '.join(extra) or 'none'}."
+                )
+            time.sleep(LINK_POLL)
+
+    def _take_part(self, bus: Bus, session: RobotSession, last_word: Callable[[Report], None]) -> None:
+        halted = False
+        while True:
+            event = bus.receive(FAREWELL if halted else None)
+            if event.__class__ is Delivery:
+                message = event.message  # type: ignore[union-attr]
+                kind = message.__class__
+                if kind is Shared:
+                    if keys.robot_of(event.key) == message.robot:  # type: ignore[union-attr]
+                        session.take_shared(message)
+                    else:
+                        bus.counters.refused += 1
+                elif kind is Reading:
+                    session.take_reading(message)
+                elif kind is Halt and not halted:
+                    halted = True
+                    self.say(f"the run is over: {message.reason}")
+                    last_word(report(session, bus.counters))
+            elif isinstance(event, Lost):
+                if event.name == keys.WORLD:
+                    if halted:
+                        return
+                    raise SwarmFailure(f"robot {session.agent.robot}: the world is gone at tick {session.tick}.")
+                lost = keys.robot_of(event.name)
+                if lost is not None:
+                    session.lose(lost)
+            elif event is None and halted:
+                return
+
+
+@dataclass(slots=True)
+class _Watched:
+    """Sends the drive, and at every decision the belief, for whoever watches."""
+
+    bus: Bus
+    agent: Agent
+    tell: Callable[[Belief], None]
+    send: Callable[[Drive], None]
+
+    def drive(self, drive: Drive) -> None:
+        self.send(drive)
+        # After the drive: the swarm does not wait for telemetry.
+        if self.agent.decision_due:
+            links = tuple(sorted(j for name in self.bus.links() if (j := keys.robot_of(name)) is not None))
+            self.tell(self.agent.belief(links, self.bus.counters.dropped, self.bus.counters.refused))

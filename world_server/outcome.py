@@ -1,0 +1,56 @@
+"""How a run ended, as one record."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from protocol.bus import Counters
+from protocol.messages import Outcome
+from protocol.scenario import scenario_digest
+from world_server.session import FOUND, INTERRUPTED, TIME_OUT, WorldSession
+
+
+def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) -> Outcome:
+    """The outcome of a session that is over.
+
+    Args:
+        run: name of the run.
+        wall_s: wall-clock s from the first tick to the last.
+        counters: what went over the world's own wires; the robots' come with their reports.
+    """
+    world = session.world
+    scenario = world.scenario
+    reports = session.reports
+    x, y = scenario.source.x, scenario.source.y
+    errors = tuple(
+        hypot(r.h_x - x, r.h_y - y) if (r := reports.get(i)) and r.has_estimate else None
+        for i in range(scenario.robots)
+    )
+    messages = {
+        "sent": counters.sent + sum(r.sent for r in reports.values()),
+        "received": counters.received + sum(r.received for r in reports.values()),
+        "dropped": counters.dropped + session.dropped + sum(r.dropped for r in reports.values()),
+        "refused": counters.refused + sum(r.refused for r in reports.values()),
+    }
+    found = world.found
+    ended = session.ended or INTERRUPTED
+    return Outcome(
+        found=found is not None,
+        time=found.t if found else world.t,
+        finder=found.robot if found else -1,
+        ticks=world.tick,
+        wall_s=wall_s,
+        ticks_per_s=world.tick / wall_s if wall_s > 0 else 0.0,
+        digest=world.digest,
+        distance_travelled=tuple(world.bodies.travelled.tolist()),
+        estimate_error=errors,
+        min_pair_distance=world.verdict.min_pair_distance,
+        run=run,
+        seed=scenario.seed,
+        scenario_digest=scenario_digest(scenario),
+        faults=tuple(session.faults),
+        messages=messages,
+        ended=ended,
+        failed=ended not in (FOUND, TIME_OUT, INTERRUPTED),
+        first_detection=world.first_detection,
+    )

@@ -1,0 +1,203 @@
+"""The world as a process: `python -m world_server`, or `odourswarm world`.
+
+Rules: this shell owns the wires, the wall clock and waits; the truth is in `World`, the barrier in `WorldSession`. Every
+wait ends when the robot waited for is gone, or when it takes too long.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import msgspec
+
+from protocol import keys
+from protocol.bus import Asked, Bus, Delivery, Lost, Seen
+from protocol.errors import SwarmFailure
+from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
+from protocol.scenario import Scenario
+from protocol.scenario.place import place_of
+from protocol.shell import Stop
+from protocol.zenoh_bus import ZenohBus, token_of
+from world_server.outcome import outcome
+from world_server.session import INTERRUPTED, WorldSession
+from world_server.telemetry import Telemetry
+from world_server.world import World
+
+PROGRESS_PERIOD = 0.1  # wall-clock s
+POLL = 0.02  # s between two looks at what is not an event
+LAST_WORDS = 1.0  # s that the world waits for the robots' reports
+FAREWELL = 0.5  # s that the world stays for the outcome to be taken
+
+
+@dataclass(slots=True)
+class WorldProcess:
+    """The world on the wires, from its endpoint to the outcome."""
+
+    run: str
+    scenario: Scenario
+    endpoints: tuple[str, ...]  # the world's, then each robot's
+    recorder: bool = False  # wait for a recorder before the start
+    launcher: bool = False  # wait for a launcher before the start, and for it to take the outcome
+    say: Callable[[str], None] = lambda _: None
+
+    def serve(self) -> Outcome:
+        """Bring the swarm up, run it to its end; how it ended.
+
+        Raises:
+            SwarmFailure: the swarm did not link up.
+            Stop: told to stop before the first tick.
+        """
+        bus = ZenohBus(
+            self.run,
+            keys.WORLD,
+            token_of(self.run),
+            listen=(self.endpoints[0],),
+            connect=(),
+            lease_ms=self.scenario.network.lease_ms,
+        )
+        try:
+            return self._serve(bus)
+        finally:
+            bus.close()
+
+    def _serve(self, bus: Bus) -> Outcome:
+        n = self.scenario.robots
+        for i in range(n):
+            bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
+            bus.subscribe(keys.robot(i, keys.REPORT), Report)
+        bus.serve(keys.SCENARIO, Ask)
+        bus.serve("robot/*/join", Join)
+        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
+        halt = bus.publisher(keys.HALT, reliable=True)
+        tell = bus.publisher(keys.EVENTS, reliable=False)
+        truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
+        progress = bus.publisher(keys.PROGRESS, reliable=False)
+        result = bus.publisher(keys.OUTCOME, reliable=True)
+
+        # The robots link up among themselves while the plume is warmed up here.
+        world = World(self.scenario)
+        session = WorldSession(world, send, halt, tell)
+        self._gather(bus)
+        telemetry = Telemetry(world, truth, field) if self.recorder else None
+        start = time.perf_counter()
+        try:
+            self._run(bus, session, telemetry, progress)
+        except Stop:
+            session.end(INTERRUPTED)
+        wall_s = time.perf_counter() - start
+        if telemetry is not None:
+            telemetry.tick(last=True)
+        self._collect_reports(bus, session)
+        ended = outcome(session, self.run, wall_s, bus.counters)
+        result(ended)
+        self._farewell(bus)
+        return ended
+
+    def _gather(self, bus: Bus) -> None:
+        """Wait until every robot has joined and every publication has its subscriber."""
+        scenario = self.scenario
+        waiting = set(range(scenario.robots))
+        members = {name for name, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted}
+        deadline = time.monotonic() + scenario.network.join_timeout
+        while True:
+            event = bus.receive(POLL)
+            if isinstance(event, Asked):
+                self._answer(event, waiting)
+            elif isinstance(event, Seen):
+                members.discard(event.name)
+            elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None and lost not in waiting:
+                raise SwarmFailure(f"robot {lost} died before the run began.")
+            elif event is None and not waiting and not members and self._all_matched(bus):
+                return
+            if time.monotonic() > deadline:
+                missing = [f"robot {i}" for i in sorted(waiting)] + sorted(members)
+                raise SwarmFailure(
+                    f"after {scenario.network.join_timeout:g} s the swarm is not complete: "
+                    f"missing {', '.join(missing) or 'a subscriber of some reading'}."
+                )
+
+    def _all_matched(self, bus: Bus) -> bool:
+        return all(
+            bus.matched(keys.robot(i, keys.READING), (keys.robot_name(i),)) for i in range(self.scenario.robots)
+        )
+
+    def _answer(self, asked: Asked, waiting: set[int]) -> None:
+        message = asked.message
+        if isinstance(message, Ask):
+            asked.answer(self._place(message.robot))
+        elif isinstance(message, Join):
+            i = message.robot
+            if keys.robot_of(asked.key) != i or not 0 <= i < self.scenario.robots:
+                asked.answer(Answer(False, f"there is no robot {i}: this run has 0 to {self.scenario.robots - 1}."))
+                return
+            declared = place_of(self.scenario, i, self.endpoints).scenario.linked
+            if message.links != declared:
+                asked.answer(Answer(False, f"its links {message.links} are not the declared ones {declared}."))
+                return
+            waiting.discard(i)
+            asked.answer(Answer(True, ""))
+
+    def _place(self, i: int) -> Answer:
+        if not 0 <= i < self.scenario.robots:
+            return Answer(False, f"there is no robot {i}: this run has robots 0 to {self.scenario.robots - 1}.")
+        return Answer(True, msgspec.json.encode(place_of(self.scenario, i, self.endpoints)).decode())
+
+    def _run(
+        self, bus: Bus, session: WorldSession, telemetry: Telemetry | None, progress: Callable[[Progress], None]
+    ) -> None:
+        """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
+        world = session.world
+        next_progress = 0.0
+        session.start()
+        if telemetry is not None:
+            telemetry.tick()
+        world.prepare()
+        receive, counters = bus.receive, bus.counters
+        while session.ended is None:
+            event = receive(None)
+            complete = False
+            if event.__class__ is Delivery:
+                message = event.message  # type: ignore[union-attr]
+                if message.__class__ is Drive:
+                    if keys.robot_of(event.key) == message.robot:  # type: ignore[union-attr]
+                        complete = session.take_drive(message)
+                    else:
+                        counters.refused += 1
+            elif isinstance(event, Lost):
+                lost = keys.robot_of(event.name)
+                complete = lost is not None and session.lose(lost)
+            elif isinstance(event, Asked):
+                event.answer(Answer(False, "the run has begun."))
+            if complete:
+                session.step()
+                if telemetry is not None:
+                    telemetry.tick()
+                # The robots think about this tick; the plume does not depend on them.
+                world.prepare()
+                now = time.perf_counter()
+                if now >= next_progress:
+                    next_progress = now + PROGRESS_PERIOD
+                    progress(
+                        Progress(world.tick, world.t, len(world.live), world.detections, world.verdict.closest)
+                    )
+
+    def _collect_reports(self, bus: Bus, session: WorldSession) -> None:
+        deadline = time.monotonic() + LAST_WORDS
+        while not session.over and (left := deadline - time.monotonic()) > 0:
+            event = bus.receive(left)
+            if isinstance(event, Delivery) and isinstance(event.message, Report):
+                if keys.robot_of(event.key) == event.message.robot:
+                    session.take_report(event.message)
+            elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None:
+                session.lose(lost)
+
+    def _farewell(self, bus: Bus) -> None:
+        """Stay until launcher and recorder have gone, or a moment if they stay."""
+        waited_for = {name for name, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted}
+        deadline = time.monotonic() + FAREWELL
+        while waited_for and (left := deadline - time.monotonic()) > 0:
+            event = bus.receive(left)
+            if isinstance(event, Lost):
+                waited_for.discard(event.name)

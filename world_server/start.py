@@ -1,0 +1,28 @@
+"""Where the robots stand at t = 0."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from protocol.scenario import Scenario
+
+
+def start_poses(scenario: Scenario) -> NDArray[np.float64]:
+    """Centre poses (x, y, theta) of all robots, shape (N, 3), m and rad.
+
+    `start.positions` when given; otherwise a column from (start.x, start.y) upwards, `start.spacing` apart. The thesis
+    says "right-up corner" only; the column is a reading (docs/departures.md). More robots than the arena is high fill
+    further columns, away from the edge.
+    """
+    start, arena, n = scenario.start, scenario.arena, scenario.robots
+    poses = np.empty((n, 3))
+    poses[:, 2] = start.heading
+    if start.positions:
+        poses[:, :2] = start.positions
+        return poses
+    per_column = max(1, int((arena.y_max - start.y) // start.spacing) + 1)
+    i = np.arange(n)
+    poses[:, 0] = start.x - start.spacing * (i // per_column)
+    poses[:, 1] = start.y + start.spacing * (i % per_column)
+    return poses

@@ -1,0 +1,112 @@
+"""Who found the source, and how close the robots came to each other.
+
+Rules: judged along the ways of the hands, straight between substeps; an arrival is where the way enters the circle of
+`source.radius`, so its time does not hang on the tick or the substep. Once found, the finder stays.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from protocol.scenario.sections import Source
+from world_server.bodies import Path
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Found(NamedTuple):
+    """The first arrival."""
+
+    robot: int
+    t: float  # s
+
+
+class Verdict:
+    """What can be said of the run so far."""
+
+    def __init__(self, source: Source, hands: Array) -> None:
+        """Robots stand with their hands at `hands`, shape (N, 2), m, at t = 0."""
+        self.found: Found | None = None
+        self._source = complex(source.x, source.y)
+        self._radius = source.radius
+        self._first, self._second = np.triu_indices(len(hands), 1)  # all pairs of robots
+        self._closest2 = math.inf
+        self._pair2 = math.inf
+        track = np.ascontiguousarray(hands).view(np.complex128)  # of one point each
+        self.judge(Path(track, np.zeros(len(hands)), 0.0), 0.0)
+
+    @property
+    def closest(self) -> float:
+        """Smallest distance of a robot's hand to the source so far, at the ends of substeps, m."""
+        return math.sqrt(self._closest2)
+
+    @property
+    def min_pair_distance(self) -> float | None:
+        """Smallest distance of two hands so far, at the ends of substeps, m; None with one robot."""
+        return math.sqrt(self._pair2) if self._first.size else None
+
+    def judge(self, path: Path, t0: float) -> None:
+        """Take in the tick that began at `t0`, s."""
+        track = path.track
+        longest = float(np.maximum.reduce(path.ways))
+        closest2 = float(np.minimum.reduce(_square(track - self._source), axis=None))
+        self._closest2 = min(self._closest2, closest2)
+        if self._first.size:
+            self._measure_pairs(track, 2.0 * longest)
+        if self.found is None and math.sqrt(closest2) <= self._radius + longest:
+            self.found = first_arrival(track, self._source, self._radius, t0, path.h)
+
+    def _measure_pairs(self, track: Complex, approach: float) -> None:
+        """Look closer at the pairs that may have beaten the record, having moved by `approach` at most, m."""
+        first, second, last = self._first, self._second, track[:, -1]
+        limit = math.sqrt(self._pair2) + approach
+        near = np.flatnonzero(_square(last[first] - last[second]) <= limit * limit)
+        if near.size:
+            pair2 = _square(track[first[near]] - track[second[near]])
+            self._pair2 = min(self._pair2, float(np.minimum.reduce(pair2, axis=None)))
+
+
+def first_arrival(track: Complex, source: complex, radius: float, t0: float, h: float) -> Found | None:
+    """First robot whose way enters the circle, and when; of two at the same time the lower number.
+
+    On the way p + s d, 0 <= s <= 1, from one end of a substep to the next, |p + s d - source|^2 = radius^2.
+
+    Args:
+        track: x + i y at t0, t0 + h, ..., shape (N, S + 1), m.
+    """
+    best: Found | None = None
+    for robot, row in enumerate(track):
+        t = _entry(row - source, radius)
+        if t is not None and (best is None or t0 + t * h < best.t):
+            best = Found(robot, t0 + t * h)
+    return best
+
+
+def _entry(way: Complex, radius: float) -> float | None:
+    """How many substeps, a real number, until `way` about the centre enters the circle; None when it does not."""
+    ends: list[complex] = way.tolist()
+    if abs(ends[0]) <= radius:
+        return 0.0
+    for s, (p, q) in enumerate(pairwise(ends)):
+        d = q - p
+        a, b, c = abs(d) ** 2, (p * d.conjugate()).real, abs(p) ** 2 - radius**2
+        discriminant = b * b - a * c
+        if b < 0.0 and discriminant >= 0.0:
+            part = c / (-b + math.sqrt(discriminant))  # the smaller root of a s^2 + 2 b s + c, without cancellation
+            if part <= 1.0:
+                return s + max(part, 0.0)
+        if abs(q) <= radius:  # rounding at the rim
+            return s + 1.0
+    return None
+
+
+def _square(z: Complex) -> Array:
+    """|z|^2 without a root."""
+    x, y = z.real, z.imag
+    return x * x + y * y

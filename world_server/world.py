@@ -1,0 +1,145 @@
+"""The truth: plume, wind, bodies, sensors, radio and verdict, advanced one tick at a time.
+
+Rules: pure; a tick is `step(t0, t1, drives) -> readings`. Nothing in it depends on who asks or when. The field does not
+depend on the robots, so `prepare()` may advance it early, while the robots think; the result is the same to the bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from hashlib import blake2b
+
+import numpy as np
+
+from protocol.messages import Drive, Reading
+from protocol.scenario import Scenario
+from world_server import sensors
+from world_server.bodies import Bodies
+from world_server.field import Field
+from world_server.radio import Radio
+from world_server.start import start_poses
+from world_server.verdict import Found, Verdict
+
+
+class World:
+    """The truth of one run."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self.tick = 0
+        self.dt = scenario.timing.tick
+        self.live: set[int] = set(range(scenario.robots))
+        self.radio = Radio(scenario)
+        poses = start_poses(scenario)
+        self.bodies = Bodies(scenario.body, scenario.timing, poses[:, 0], poses[:, 1], poses[:, 2])
+        hands = self.bodies.hands()
+        self.field = Field(scenario)
+        self._wind_past = self.field.warm_up(hands)
+        self.verdict = Verdict(scenario.source, hands)
+        self.first_detection: float | None = None
+        self.first_detector = -1
+        self.detections = 0
+        self.torques = np.zeros((2, scenario.robots))
+        self._dead = np.zeros(scenario.robots, dtype=bool)
+        self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
+        self._digest = blake2b(digest_size=16)
+        self.concentration = np.zeros(scenario.robots)
+        self._sampled_at = -1  # plume step
+        self._sense(hands)
+
+    @property
+    def t(self) -> float:
+        """Simulated time, s."""
+        return self.tick * self.dt
+
+    @property
+    def next_t(self) -> float:
+        """Time of the next tick, s."""
+        return (self.tick + 1) * self.dt
+
+    @property
+    def found(self) -> Found | None:
+        """Who reached the source and when, if anyone did."""
+        return self.verdict.found
+
+    @property
+    def digest(self) -> str:
+        """32 hex digits that name the truth history up to now."""
+        done = self._digest.copy()
+        done.update(self.field.plume.snapshot().tobytes())
+        return done.hexdigest()
+
+    def lose(self, robot: int) -> None:
+        """A robot died: its body brakes, it senses and drives no more."""
+        self.live.discard(robot)
+        self._dead[robot] = True
+
+    def prepare(self) -> None:
+        """Advance the field to the next tick; the robots' drives cannot change it."""
+        self.field.advance_to(self.next_t)
+
+    def step(self, t0: float, t1: float, drives: Mapping[int, Drive]) -> list[Reading]:
+        """Move everything from t0, which is now, to t1, the next tick; what the live robots sense there.
+
+        Args:
+            t0, t1: s.
+            drives: wheel torques by robot; a robot without one rolls on without torque, a dead one brakes.
+        """
+        if abs(t0 - self.t) > 1e-9 or abs(t1 - self.next_t) > 1e-9:
+            raise ValueError(f"the world is at {self.t} s and steps to {self.next_t} s, not from {t0} to {t1}")
+        torques = self.torques
+        torques.fill(0.0)
+        for i, drive in drives.items():
+            torques[0, i] = drive.tau_left
+            torques[1, i] = drive.tau_right
+        if self._dead.any():
+            self.bodies.brake(self._dead)
+        path = self.bodies.step(torques[0], torques[1])
+        self.verdict.judge(path, t0)
+        self.field.advance_to(t1)
+        self.tick += 1
+        self._sense(path.hands[:, -1])
+        return self.readings()
+
+    def readings(self) -> list[Reading]:
+        """What the live robots sense now."""
+        s, k, t, b = self.scenario, self.tick, self.t, self.bodies
+        past = self._wind_past if k == 0 else self._wind_past[:0]
+        wind_x, wind_y = self._wind
+        rows = zip(
+            b.x.tolist(), b.y.tolist(), b.theta.tolist(), b.nu.tolist(), b.omega.tolist(),
+            wind_x.tolist(), wind_y.tolist(), self.concentration.tolist(),
+            strict=True,
+        )  # fmt: skip
+        readings = []
+        live = self.live
+        for i, (x, y, theta, nu, omega, u, v, ppt) in enumerate(rows):
+            if i in live:
+                hears = self.radio.hears(i, k, live)
+                history = tuple((float(a), float(c)) for a, c in past[:, i])
+                exact = Reading(i, k, t, x, y, theta, nu, omega, u, v, ppt, hears, history)
+                readings.append(sensors.observe(exact, s.sensors, s.seed))
+        return readings
+
+    def _sense(self, hands: np.ndarray) -> None:
+        xs, ys = hands[:, 0], hands[:, 1]
+        self._wind = self.field.wind.at(xs, ys)
+        plume = self.field.plume
+        if plume.step != self._sampled_at:
+            # The gas sensors sample as often as the plume moves and hold in between.
+            self.concentration = plume.concentration(xs, ys)
+            self._sampled_at = plume.step
+        if self.tick % self._ticks_per_decision == 0:
+            self._note_detections()
+        b = self.bodies
+        self._digest.update(
+            b"".join(a.tobytes() for a in (b.x, b.y, b.theta, b.nu, b.omega, *self._wind, self.concentration))
+        )
+
+    def _note_detections(self) -> None:
+        above = self.concentration > self.scenario.decision.threshold
+        if above.any():
+            self.detections += int(above.sum())
+            if self.first_detection is None:
+                self.first_detection = self.t
+                self.first_detector = int(above.argmax())
