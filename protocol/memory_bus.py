@@ -20,6 +20,7 @@ class MemoryNetwork:
 
     def __init__(self, links: Iterable[tuple[str, str]], *, token: int = 0, wire: bool = False) -> None:
         self.codec = Codec(token) if wire else None
+        self.version = 0  # changes whenever the way of a message can change
         self._linked: dict[str, dict[str, None]] = {}
         self._members: dict[str, MemoryBus] = {}
         for a, b in links:
@@ -33,11 +34,13 @@ class MemoryNetwork:
             self._members[other].inbox.append(Seen(name))
             bus.inbox.append(Seen(other))
         self._members[name] = bus
+        self.version += 1
         return bus
 
     def kill(self, name: str) -> None:
         """End member `name` as SIGKILL would: its peers see it `Lost`, what it sent before stays sent."""
         if self._members.pop(name, None) is not None:
+            self.version += 1
             for other in self.peers(name):
                 self._members[other].inbox.append(Lost(name))
 
@@ -48,6 +51,10 @@ class MemoryNetwork:
     def member(self, name: str) -> MemoryBus:
         """The living member `name`."""
         return self._members[name]
+
+    def listeners(self, name: str, key: str) -> list[MemoryBus]:
+        """Living members linked to `name` that are subscribed to `key`."""
+        return [bus for other in self.peers(name) if (bus := self._members[other]).kinds_under(key)]
 
     def inject(self, name: str, key: str, frame: bytes) -> None:
         """Give member `name` raw bytes under `key`, as a stranger on the wires would."""
@@ -67,22 +74,32 @@ class MemoryBus:
         self._served: dict[str, type[Message]] = {}
 
     def publisher(self, key: str, *, reliable: bool) -> Publish:  # noqa: ARG002 - nothing is lost in memory
-        network, counters, name = self._network, self.counters, self.name
+        network, counters = self._network, self.counters
         codec = network.codec
+        route: list[MemoryBus] = []
+        version = -1
 
         def publish(message: Message) -> None:
+            nonlocal version
+            if version != network.version:
+                version = network.version
+                route[:] = network.listeners(self.name, key)
             counters.sent += 1
-            for other in network.peers(name):
-                if codec is None:
-                    network.member(other).take(key, message)
-                else:
-                    network.member(other).take_frame(key, codec.encode(message))
+            if codec is None:
+                delivery = Delivery(key, message)
+                for bus in route:
+                    bus.take(delivery)
+            elif route:
+                frame = codec.encode(message)
+                for bus in route:
+                    bus.take_frame(key, frame)
 
         return publish
 
     def subscribe(self, key: str, *kinds: type[Message]) -> None:
         self._subscriptions[key] = kinds
         self._resolved.clear()
+        self._network.version += 1
 
     def serve(self, key: str, kind: type[Message]) -> None:
         self._served[key] = kind
@@ -110,16 +127,11 @@ class MemoryBus:
     def close(self) -> None:
         self._network.kill(self.name)
 
-    def take(self, key: str, message: Message) -> None:
-        """Receive a message from a peer if it is subscribed to."""
-        kinds = self._resolved.get(key)
-        if kinds is None:
-            kinds = self._resolve(key)
-        if not kinds:
-            return
-        if type(message) in kinds:
+    def take(self, delivery: Delivery) -> None:
+        """Receive a message from a peer, or refuse it."""
+        if delivery.message.__class__ in self.kinds_under(delivery.key):
             self.counters.received += 1
-            self.inbox.append(Delivery(key, message))
+            self.inbox.append(delivery)
         else:
             self.counters.refused += 1
 
@@ -132,9 +144,13 @@ class MemoryBus:
         if isinstance(message, Refusal):
             self.counters.refused += 1
         else:
-            self.take(key, message)
+            self.take(Delivery(key, message))
 
-    def _resolve(self, key: str) -> tuple[type[Message], ...]:
-        kinds = tuple(kind for pattern, ks in self._subscriptions.items() if fnmatchcase(key, pattern) for kind in ks)
-        self._resolved[key] = kinds
+    def kinds_under(self, key: str) -> tuple[type[Message], ...]:
+        """The kinds of message that this member takes under `key`; empty: it is not subscribed."""
+        kinds = self._resolved.get(key)
+        if kinds is None:
+            subscriptions = self._subscriptions.items()
+            kinds = tuple(kind for pattern, ks in subscriptions if fnmatchcase(key, pattern) for kind in ks)
+            self._resolved[key] = kinds
         return kinds

@@ -56,7 +56,7 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     search_y: float
     h_x: float  # my decision h^ic (3.31), m
     h_y: float
-    nearby: tuple[tuple[int, int, float, float, float, float], ...] = ()  # relayed (robot, tick, x, y, vx, vy)
+    relayed: tuple[tuple[int, int, float, float, float, float], ...] = ()  # passed on: (robot, tick, x, y, vx, vy)
     virtual: tuple[float, ...] = ()  # an algorithm's own numbers (virtual position and velocity, charge, ...)
 
 

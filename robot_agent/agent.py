@@ -83,7 +83,7 @@ class Agent:
             group.heading[1],
             h_x,
             h_y,
-            self._neighbours.nearby(own.tick, own.x, own.y),
+            self._neighbours.relay(own.tick),
         )
 
     def act(self, heard: Iterable[Shared]) -> Drive:

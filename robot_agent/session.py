@@ -27,55 +27,55 @@ class RobotSession:
         self._states: dict[int, dict[int, Shared]] = {}  # tick -> neighbour -> its state
         self._hears: tuple[tuple[int, int], ...] = ()
         self._missing: set[tuple[int, int]] = set()
-        self._acting = False
-
-    @property
-    def waiting(self) -> bool:
-        """Whether the session waits for states of neighbours."""
-        return self._acting
+        self.waiting = False  # for states of neighbours
 
     def take_reading(self, reading: Reading) -> bool:
         """Begin the next tick; whether the tick was finished at once."""
-        if reading.robot != self.agent.robot or reading.tick != self.tick + 1 or self._acting:
+        tick = reading.tick
+        if tick != self.tick + 1 or reading.robot != self.agent.robot or self.waiting:
             self.dropped += 1
             return False
-        self.tick = reading.tick
-        self._states.pop(self.tick - HISTORY, None)
-        self._tell(self.agent.sense(reading))
-        self._hears = reading.hears
+        self.tick = tick
         states = self._states
-        self._missing = {(j, k) for j, k in reading.hears if j not in states.get(k, ())}
-        self._acting = True
-        return self._finish_if_complete()
+        states.pop(tick - HISTORY, None)
+        self._tell(self.agent.sense(reading))
+        self._hears = hears = reading.hears
+        of_now = states.get(tick)
+        if of_now is None:
+            of_now = states[tick] = {}
+        self._missing = {h for h in hears if h[0] not in (of_now if h[1] == tick else states.get(h[1], ()))}
+        self.waiting = True
+        return False if self._missing else self._finish()
 
     def take_shared(self, state: Shared) -> bool:
         """Take a neighbour's state; whether that finished the tick."""
+        tick, robot = state.tick, state.robot
         # A neighbour can be one tick ahead: the world may have sent it the next reading first.
-        if not self.tick - HISTORY < state.tick <= self.tick + 1:
+        if not self.tick - HISTORY < tick <= self.tick + 1:
             self.dropped += 1
             return False
-        of_tick = self._states.setdefault(state.tick, {})
-        if state.robot in of_tick:
+        of_tick = self._states.get(tick)
+        if of_tick is None:
+            of_tick = self._states[tick] = {}
+        elif robot in of_tick:
             self.dropped += 1
             return False
-        of_tick[state.robot] = state
-        if self._acting and self._missing:
-            self._missing.discard((state.robot, state.tick))
-            return self._finish_if_complete()
+        of_tick[robot] = state
+        if self.waiting:
+            self._missing.discard((robot, tick))
+            return False if self._missing else self._finish()
         return False
 
     def lose(self, robot: int) -> bool:
         """A neighbour is gone: do not wait for it; whether that finished the tick."""
-        if not self._acting:
+        if not self.waiting:
             return False
-        self._missing = {(j, k) for j, k in self._missing if j != robot}
-        return self._finish_if_complete()
+        self._missing = {h for h in self._missing if h[0] != robot}
+        return False if self._missing else self._finish()
 
-    def _finish_if_complete(self) -> bool:
-        if self._missing:
-            return False
+    def _finish(self) -> bool:
         states = self._states
-        heard = [states[k][j] for j, k in self._hears if j in states.get(k, ())]
-        self._acting = False
+        heard = [states[k][j] for j, k in self._hears if k in states and j in states[k]]
+        self.waiting = False
         self._drive(self.agent.act(heard))
         return True

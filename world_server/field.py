@@ -29,7 +29,6 @@ class Field:
         # The wind blows for as long as either needs it; the source releases during the last `warm_up` seconds.
         self._release_at = -_steps(scenario.plume.warm_up, dt)
         self._step = min(self._release_at, -_steps(self._samples, dt))  # 0 at t = 0
-        self.moved = True  # set by every step; whoever looks at the field may set it back
 
     def warm_up(self, points: Array) -> Array:
         """Live through the time before t = 0 and return the wind recorded meanwhile.
@@ -58,8 +57,7 @@ class Field:
             if self._step >= self._release_at:
                 self.plume.advance(self.wind)
             self._step += 1
-            self.moved = True
-
+    
 
 def _steps(seconds: float, dt: float) -> int:
     return math.ceil(seconds / dt - 1e-9)

@@ -180,7 +180,7 @@ class WorldProcess:
                 if now >= next_progress:
                     next_progress = now + PROGRESS_PERIOD
                     progress(
-                        Progress(world.tick, world.t, len(world.live), world.detections, world.verdict.closest)
+                        Progress(world.tick, world.t, len(world.live), world.detections, world.closest)
                     )
 
     def _collect_reports(self, bus: Bus, session: WorldSession) -> None:

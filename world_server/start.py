@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from protocol.scenario import Scenario
+from protocol.scenario.scenario import robots_per_column
 
 
 def start_poses(scenario: Scenario) -> NDArray[np.float64]:
@@ -15,13 +16,13 @@ def start_poses(scenario: Scenario) -> NDArray[np.float64]:
     says "right-up corner" only; the column is a reading (docs/departures.md). More robots than the arena is high fill
     further columns, away from the edge.
     """
-    start, arena, n = scenario.start, scenario.arena, scenario.robots
+    start, n = scenario.start, scenario.robots
     poses = np.empty((n, 3))
     poses[:, 2] = start.heading
     if start.positions:
         poses[:, :2] = start.positions
         return poses
-    per_column = max(1, int((arena.y_max - start.y) // start.spacing) + 1)
+    per_column = robots_per_column(scenario)
     i = np.arange(n)
     poses[:, 0] = start.x - start.spacing * (i // per_column)
     poses[:, 1] = start.y + start.spacing * (i % per_column)

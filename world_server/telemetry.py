@@ -1,6 +1,7 @@
 """What the recorder is told of the truth, as often as the scenario's `recording` table says.
 
-Rules: built from a `World` without changing it; nothing here is ever sent to a robot.
+Rules: nothing here changes a run, and nothing is ever sent to a robot. Telemetry of a tick is taken before the world
+prepares the next one.
 """
 
 from __future__ import annotations
@@ -46,6 +47,7 @@ def truth_of(world: World, count: int) -> Truth:
 
 def field_of(world: World) -> Field:
     """Plume and wind as they are."""
+    world.field.advance_to(world.t)
     filaments = world.field.plume.snapshot().astype("<f4")
     wind = world.field.wind.nodes_in_arena().astype("<f4")
     return Field(world.tick, world.t, filaments.tobytes(), wind.tobytes())

@@ -36,15 +36,12 @@ class Verdict:
         self._source = complex(source.x, source.y)
         self._radius = source.radius
         self._first, self._second = np.triu_indices(len(hands), 1)  # all pairs of robots
-        self._closest2 = math.inf
         self._pair2 = math.inf
+        # How far the hands may still go before a look is worth its time: nobody can arrive, no pair beat the record.
+        self._source_slack = 0.0
+        self._pair_slack = 0.0
         track = np.ascontiguousarray(hands).view(np.complex128)  # of one point each
         self.judge(Path(track, np.zeros(len(hands)), 0.0), 0.0)
-
-    @property
-    def closest(self) -> float:
-        """Smallest distance of a robot's hand to the source so far, at the ends of substeps, m."""
-        return math.sqrt(self._closest2)
 
     @property
     def min_pair_distance(self) -> float | None:
@@ -53,23 +50,31 @@ class Verdict:
 
     def judge(self, path: Path, t0: float) -> None:
         """Take in the tick that began at `t0`, s."""
-        track = path.track
         longest = float(np.maximum.reduce(path.ways))
-        closest2 = float(np.minimum.reduce(_square(track - self._source), axis=None))
-        self._closest2 = min(self._closest2, closest2)
-        if self._first.size:
-            self._measure_pairs(track, 2.0 * longest)
-        if self.found is None and math.sqrt(closest2) <= self._radius + longest:
-            self.found = first_arrival(track, self._source, self._radius, t0, path.h)
+        if self.found is None:
+            self._source_slack -= longest
+            if self._source_slack <= 0.0:
+                self._look_at_source(path, t0, longest)
+        self._pair_slack -= 2.0 * longest
+        if self._pair_slack <= 0.0 and self._first.size:
+            self._look_at_pairs(path.track, 2.0 * longest)
 
-    def _measure_pairs(self, track: Complex, approach: float) -> None:
+    def _look_at_source(self, path: Path, t0: float, longest: float) -> None:
+        last = float(np.minimum.reduce(np.abs(path.track[:, -1] - self._source)))
+        if last <= self._radius + 2.0 * longest:
+            self.found = first_arrival(path.track, self._source, self._radius, t0, path.h)
+        self._source_slack = last - self._radius
+
+    def _look_at_pairs(self, track: Complex, approach: float) -> None:
         """Look closer at the pairs that may have beaten the record, having moved by `approach` at most, m."""
         first, second, last = self._first, self._second, track[:, -1]
         limit = math.sqrt(self._pair2) + approach
-        near = np.flatnonzero(_square(last[first] - last[second]) <= limit * limit)
+        distance2 = _square(last[first] - last[second])
+        near = np.flatnonzero(distance2 <= limit * limit)
         if near.size:
             pair2 = _square(track[first[near]] - track[second[near]])
             self._pair2 = min(self._pair2, float(np.minimum.reduce(pair2, axis=None)))
+        self._pair_slack = math.sqrt(float(np.minimum.reduce(distance2))) - math.sqrt(self._pair2)
 
 
 def first_arrival(track: Complex, source: complex, radius: float, t0: float, h: float) -> Found | None:

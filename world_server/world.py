@@ -42,9 +42,9 @@ class World:
         self.torques = np.zeros((2, scenario.robots))
         self._dead = np.zeros(scenario.robots, dtype=bool)
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
+        self._ticks_per_sample = max(1, round(scenario.sensors.period / scenario.timing.tick))
         self._digest = blake2b(digest_size=16)
         self.concentration = np.zeros(scenario.robots)
-        self._sampled_at = -1  # plume step
         self._sense(hands)
 
     @property
@@ -64,10 +64,15 @@ class World:
 
     @property
     def digest(self) -> str:
-        """32 hex digits that name the truth history up to now."""
-        done = self._digest.copy()
-        done.update(self.field.plume.snapshot().tobytes())
-        return done.hexdigest()
+        """32 hex digits that name the truth history up to now: robots and what they sense at every tick, the plume
+        whenever it is sampled."""
+        return self._digest.hexdigest()
+
+    @property
+    def closest(self) -> float:
+        """Distance of the robot that is nearest to the source now, m."""
+        source = self.scenario.source
+        return float(np.hypot(*(self.bodies.hands() - (source.x, source.y)).T).min())
 
     def lose(self, robot: int) -> None:
         """A robot died: its body brakes, it senses and drives no more."""
@@ -75,7 +80,8 @@ class World:
         self._dead[robot] = True
 
     def prepare(self) -> None:
-        """Advance the field to the next tick; the robots' drives cannot change it."""
+        """Advance the field to the next tick, which is otherwise done when its sensors sample; the robots' drives cannot
+        change it."""
         self.field.advance_to(self.next_t)
 
     def step(self, t0: float, t1: float, drives: Mapping[int, Drive]) -> list[Reading]:
@@ -96,7 +102,6 @@ class World:
             self.bodies.brake(self._dead)
         path = self.bodies.step(torques[0], torques[1])
         self.verdict.judge(path, t0)
-        self.field.advance_to(t1)
         self.tick += 1
         self._sense(path.hands[:, -1])
         return self.readings()
@@ -104,7 +109,7 @@ class World:
     def readings(self) -> list[Reading]:
         """What the live robots sense now."""
         s, k, t, b = self.scenario, self.tick, self.t, self.bodies
-        past = self._wind_past if k == 0 else self._wind_past[:0]
+        history: tuple[tuple[float, float], ...] = ()
         wind_x, wind_y = self._wind
         rows = zip(
             b.x.tolist(), b.y.tolist(), b.theta.tolist(), b.nu.tolist(), b.omega.tolist(),
@@ -116,19 +121,20 @@ class World:
         for i, (x, y, theta, nu, omega, u, v, ppt) in enumerate(rows):
             if i in live:
                 hears = self.radio.hears(i, k, live)
-                history = tuple((float(a), float(c)) for a, c in past[:, i])
+                if k == 0:
+                    history = tuple((float(a), float(c)) for a, c in self._wind_past[:, i])
                 exact = Reading(i, k, t, x, y, theta, nu, omega, u, v, ppt, hears, history)
                 readings.append(sensors.observe(exact, s.sensors, s.seed))
         return readings
 
     def _sense(self, hands: np.ndarray) -> None:
-        xs, ys = hands[:, 0], hands[:, 1]
-        self._wind = self.field.wind.at(xs, ys)
-        plume = self.field.plume
-        if plume.step != self._sampled_at:
-            # The gas sensors sample as often as the plume moves and hold in between.
-            self.concentration = plume.concentration(xs, ys)
-            self._sampled_at = plume.step
+        if self.tick % self._ticks_per_sample == 0:
+            # Wind and gas sensors hold their value in between.
+            self.field.advance_to(self.t)
+            xs, ys = hands[:, 0], hands[:, 1]
+            self._wind = self.field.wind.at(xs, ys)
+            self.concentration = self.field.plume.concentration(xs, ys)
+            self._digest.update(self.field.plume.snapshot().tobytes())
         if self.tick % self._ticks_per_decision == 0:
             self._note_detections()
         b = self.bodies

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from math import dist
 
 from protocol.errors import ScenarioError
-from protocol.scenario.scenario import Scenario
+from protocol.scenario.scenario import Scenario, robots_per_column
 from protocol.scenario.settings import placed
 from protocol.topology.graph import fault_in
 
@@ -78,7 +78,7 @@ def _column(scenario: Scenario) -> Iterator[Fault]:
             f"the robots start from ({start.x:g}, {start.y:g}); it must be inside the arena, {_arena_words(scenario)}.",
             ("start.x", "start.y"),
         )
-    per_column = int((arena.y_max - start.y) // start.spacing) + 1
+    per_column = robots_per_column(scenario)
     columns = -(-n // per_column)
     if start.x - (columns - 1) * start.spacing < arena.x_min:
         most = per_column * (int((start.x - arena.x_min) // start.spacing) + 1)

@@ -75,6 +75,12 @@ class RobotScenario(s.Table, frozen=True):
     network: s.Network
 
 
+def robots_per_column(scenario: Scenario) -> int:
+    """How many robots stand above each other at the start before a further column is begun."""
+    start = scenario.start
+    return max(1, int((scenario.arena.y_max - start.y) // start.spacing) + 1)
+
+
 def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:
     """Robots that share a physical link with robot `i`: those it listens to and those that listen to it."""
     heard = {j for a, j, _ in graph if a == i}

@@ -71,6 +71,7 @@ class Plume(Table, frozen=True):
 class Sensors(Table, frozen=True):
     """What the robots sense, and how well."""
 
+    period: Annotated[float, Meta(gt=0, le=60)] = 1.0  # wind and gas sensors, s (Table 3.1: sampling time)
     wind_noise: NonNegative = 0.0  # standard deviation per axis, m/s
     position_noise: NonNegative = 0.0  # of the odometry, m per axis
     heading_noise: NonNegative = 0.0  # rad
@@ -203,9 +204,9 @@ class Control(Table, frozen=True):
     """What all control laws have in common."""
 
     step: Literal["implicit", "explicit"] = "implicit"  # sampled-data form of sig(.)^a, see robot_agent.sig
-    relay: bool = True  # neighbours tell of the robots near them, so that all keep clear of all
-    relay_range: Positive = 8.0  # how near, m
-    relay_age: Positive = 1.0  # how old a relayed state may be, s
+    relay: bool = True  # neighbours pass on whom they have heard, so that all keep clear of all
+    relay_period: Positive = 0.1  # s
+    relay_age: Positive = 1.0  # older states are not passed on, s
 
 
 class Network(Table, frozen=True):

@@ -1,0 +1,107 @@
+"""`odourswarm run`: a world, N robots and, when wanted, a recorder, on this machine."""
+
+from __future__ import annotations
+
+import secrets
+import signal
+from pathlib import Path
+from types import FrameType
+from typing import Annotated, NoReturn
+
+import typer
+
+from deploy.cli.options import complain, read_scenario
+from protocol.errors import ScenarioError, SwarmFailure
+from protocol.messages import Outcome
+from protocol.scenario import Scenario
+from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED
+
+INTERRUPTED = 130
+
+
+def run(
+    file: Annotated[Path | None, typer.Argument(metavar="[SCENARIO.toml]", help="A scenario file; none: the default.")] = None,
+    robots: Annotated[int | None, typer.Option("--robots", "-n", help="Number of robots.")] = None,
+    algorithm: Annotated[str | None, typer.Option("--algorithm", "-a", help="simple, cfpso, dcs.")] = None,
+    topology: Annotated[str | None, typer.Option("--topology", "-t", help="A named graph, or a graph file.")] = None,
+    case: Annotated[int | None, typer.Option("--case", help="Source and wind of Table 4.6, 1 to 9.")] = None,
+    source: Annotated[str | None, typer.Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,
+    wind: Annotated[float | None, typer.Option("--wind", metavar="U", help="Mean wind speed, m/s.")] = None,
+    seed: Annotated[int | None, typer.Option("--seed", help="All randomness follows from it.")] = None,
+    max_time: Annotated[float | None, typer.Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
+    preset: Annotated[str | None, typer.Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
+    setting: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
+    clock: Annotated[str, typer.Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
+    bus: Annotated[str, typer.Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
+    record: Annotated[Path | None, typer.Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
+    view: Annotated[bool, typer.Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")] = False,
+) -> None:
+    """Let a swarm search for the source, and say whether it found it."""
+    try:
+        _choice("--clock", clock, ("lockstep",))
+        _choice("--bus", bus, ("zenoh", "memory"))
+        _writable(record)
+        scenario = read_scenario(
+            file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
+            topology=topology, wind=wind, seed=seed, max_time=max_time,
+        )  # fmt: skip
+    except ScenarioError as error:
+        complain(error)
+        raise typer.Exit(EXIT_BAD_INPUT) from None
+    signal.signal(signal.SIGTERM, _terminate)
+    name = f"run-{secrets.token_hex(4)}"
+    try:
+        outcome = _execute(name, scenario, bus, record, view, quiet=json)
+    except SwarmFailure as error:
+        complain(error)
+        raise typer.Exit(EXIT_FAILED) from None
+    except KeyboardInterrupt:
+        complain(KeyboardInterrupt("interrupted; all processes have ended" + _left_behind(record)))
+        raise typer.Exit(INTERRUPTED) from None
+    _print(outcome, scenario, record, json=json)
+    raise typer.Exit(EXIT_FAILED if outcome.failed else 0)
+
+
+def _execute(name: str, scenario: Scenario, bus: str, record: Path | None, view: bool, *, quiet: bool) -> Outcome:
+    from deploy.cli.progress import Display
+
+    with Display(scenario, quiet=quiet) as display:
+        if bus == "memory":
+            from deploy.memory_watch import run_watched
+
+            return run_watched(name, scenario, display, record, view=view)
+        from deploy.launch.swarm import SwarmRun
+
+        return SwarmRun(name, scenario, record, view).execute(display)
+
+
+def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: bool) -> None:
+    if json:
+        import msgspec
+
+        typer.echo(msgspec.json.encode(msgspec.structs.asdict(outcome)).decode())
+    else:
+        from deploy.cli.verdict import print_verdict
+
+        print_verdict(outcome, scenario, record)
+
+
+def _choice(flag: str, value: str, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise ScenarioError(f'{flag} is "{value}"; it must be {" or ".join(allowed)}.')
+
+
+def _writable(record: Path | None) -> None:
+    if record is None:
+        return
+    if record.is_dir() or not record.resolve().parent.is_dir():
+        raise ScenarioError(f"--record is {record}; it must be a file in a folder that exists.")
+
+
+def _left_behind(record: Path | None) -> str:
+    return f", and {record} holds what was recorded." if record is not None else "."
+
+
+def _terminate(signum: int, frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt

@@ -1,0 +1,43 @@
+"""The end of a run, for a person."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from protocol.messages import Outcome
+from protocol.scenario import Scenario
+
+
+def print_verdict(outcome: Outcome, scenario: Scenario, record: Path | None) -> None:
+    """Found or not, by whom, how well, and what to do next; on stdout."""
+    console = Console(highlight=False)
+    console.print(_headline(outcome, scenario))
+    errors = [error for error in outcome.estimate_error if error is not None]
+    facts = [f"{outcome.ticks} ticks in {outcome.wall_s:.1f} s ({outcome.ticks_per_s:.0f} ticks/s)"]
+    if errors:
+        facts.append(f"estimates {min(errors):.1f} to {max(errors):.1f} m off")
+    if outcome.min_pair_distance is not None:
+        facts.append(f"robots never nearer than {outcome.min_pair_distance:.2f} m")
+    console.print("  " + ", ".join(facts))
+    for fault in outcome.faults:
+        console.print(Text("  " + fault, style="yellow"))
+    m = outcome.messages
+    refused = f", {m['refused']} refused, {m['dropped']} dropped" if m["refused"] or m["dropped"] else ""
+    console.print(f"  {m['sent']} messages sent{refused}; digest {outcome.digest}")
+    if record is not None:
+        console.print(f"  odourswarm view {record}")
+
+
+def _headline(outcome: Outcome, scenario: Scenario) -> Text:
+    if outcome.found:
+        where = f"({scenario.source.x:g}, {scenario.source.y:g})"
+        return Text(f"Found: robot {outcome.finder} reached the source at {where} after {outcome.time:.1f} s.", "bold green")
+    if outcome.failed:
+        return Text(f"Failed after {outcome.time:.1f} s: {outcome.ended}.", "bold red")
+    if outcome.first_detection is None:
+        return Text(f"Not found within {outcome.time:.1f} s: no robot met the odour.", "bold yellow")
+    text = f"Not found within {outcome.time:.1f} s; the odour was first met at {outcome.first_detection:.1f} s."
+    return Text(text, "bold yellow")

@@ -1,0 +1,64 @@
+"""`odourswarm world`: the world of a run by hand, on any host."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from deploy.cli.options import complain, read_scenario
+from protocol.errors import OdourswarmError, ScenarioError
+from protocol.keys import RUN_NAME
+from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
+
+
+def world(
+    run: Annotated[str, typer.Option("--run", help="Name of the run; the robots give the same.")],
+    file: Annotated[Path | None, typer.Argument(metavar="[SCENARIO.toml]")] = None,
+    setting: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
+    recorder: Annotated[bool, typer.Option("--recorder", help="Wait for a recorder before the start.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="The outcome as one JSON object.")] = False,
+) -> None:
+    """Own the plume, the physics and the clock of a run; start when all robots have joined.
+
+    The endpoints stand in the scenario, the world's first: network.endpoints = ["tcp/10.0.0.1:7447", ...].
+    """
+    try:
+        check_run_name(run)
+        scenario = read_scenario(file, setting or [])
+        if not scenario.network.endpoints:
+            raise ScenarioError(
+                "network.endpoints is empty; a world by hand needs its own endpoint and one per robot, "
+                f'for example --set \'network.endpoints=["tcp/0.0.0.0:7447", ...]\' with {scenario.robots + 1} of them.'
+            )
+    except ScenarioError as error:
+        complain(error)
+        raise typer.Exit(EXIT_BAD_INPUT) from None
+    from world_server.process import WorldProcess
+
+    stop_on_signals(leash=False)
+    status = 0
+    try:
+        outcome = WorldProcess(run, scenario, scenario.network.endpoints, recorder=recorder).serve()
+        status = EXIT_FAILED if outcome.failed else 0
+        if json:
+            import msgspec
+
+            typer.echo(msgspec.json.encode(msgspec.structs.asdict(outcome)).decode())
+        else:
+            from deploy.cli.verdict import print_verdict
+
+            print_verdict(outcome, scenario, None)
+    except OdourswarmError as error:
+        complain(error)
+        status = EXIT_FAILED
+    except Stop:
+        status = 130
+    leave(status)
+
+
+def check_run_name(run: str) -> None:
+    """Refuse a name that cannot stand in a key expression."""
+    if not RUN_NAME.fullmatch(run):
+        raise ScenarioError(f'--run is "{run}"; it must be letters, digits, ".", "_" and "-", at most 64 of them.')

@@ -1,0 +1,1 @@
+"""The launcher: a swarm of processes on this machine, from the first spawn to the last exit."""

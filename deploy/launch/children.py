@@ -1,0 +1,90 @@
+"""The processes of a run: started together, never left behind.
+
+Rules: every child is on a leash (its standard input is a pipe that ends with the launcher, however the launcher ends) and
+in a process group of its own, so that a Ctrl-C at the terminal reaches the launcher only. What a child writes to its
+standard error is kept for the sentence that says why it failed.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+POLL = 0.01  # s
+
+
+@dataclass(slots=True)
+class Child:
+    """One process of the run."""
+
+    name: str
+    process: subprocess.Popen[bytes]
+    log: Path
+
+    @property
+    def status(self) -> int | None:
+        """Exit status, or None while it runs; negative: the signal that ended it."""
+        return self.process.poll()
+
+    def last_words(self) -> str:
+        """The last line it wrote to its standard error."""
+        try:
+            lines = self.log.read_text(encoding="utf-8", errors="replace").split("\n")
+        except OSError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+
+@dataclass(slots=True)
+class Children:
+    """All processes of the run."""
+
+    folder: Path
+    members: dict[str, Child] = field(default_factory=dict)
+
+    def start(self, name: str, module: str, arguments: Sequence[str]) -> Child:
+        """Start `python -m module arguments` as member `name`."""
+        log = self.folder / f"{name.replace('/', '-')}.err"
+        with log.open("wb") as stderr:
+            process = subprocess.Popen(
+                [sys.executable, "-m", module, *arguments, "--leash"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=stderr,
+                start_new_session=True,
+            )
+        child = self.members[name] = Child(name, process, log)
+        return child
+
+    def failed(self, names: Iterable[str] | None = None) -> list[Child]:
+        """Those that ended with a status other than 0."""
+        chosen = self.members if names is None else {n: self.members[n] for n in names if n in self.members}
+        return [child for child in chosen.values() if child.status not in (None, 0)]
+
+    def wait(self, timeout: float, names: Iterable[str] | None = None) -> bool:
+        """Wait for all (or `names`) to end; whether they did within `timeout` seconds."""
+        deadline = time.monotonic() + timeout
+        waited_for = [self.members[n] for n in (self.members if names is None else names) if n in self.members]
+        while any(child.status is None for child in waited_for):
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(POLL)
+        return True
+
+    def end(self, patience: float) -> None:
+        """End everyone: ask, wait `patience` seconds, kill. Also those that are stopped (SIGSTOP)."""
+        for child in self.members.values():
+            if child.status is None:
+                child.process.terminate()
+        if not self.wait(patience):
+            for child in self.members.values():
+                if child.status is None:
+                    child.process.kill()
+        for child in self.members.values():
+            child.process.wait()
+            if child.process.stdin is not None:
+                child.process.stdin.close()

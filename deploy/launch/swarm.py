@@ -1,0 +1,139 @@
+"""A run over Zenoh on this machine: world, robots and recorder as processes, watched to their end.
+
+Rules: the launcher decides nothing of the run; it starts the processes, passes on what the world says, and leaves nothing
+behind: no process, no socket, no file, whichever way it ends.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from deploy.launch.children import Children
+from deploy.launch.watcher import Watcher
+from protocol import keys
+from protocol.bus import Bus, Delivery, Lost
+from protocol.endpoints import make_endpoints
+from protocol.errors import SwarmFailure
+from protocol.messages import Event, Outcome, Progress
+from protocol.scenario import Scenario
+from protocol.scenario.place import place_of
+from protocol.zenoh_bus import ZenohBus, token_of
+
+POLL = 0.1  # s between two looks at the processes
+FLUSH = 60.0  # s that the recorder may take to write what it holds after the run
+LEAVE = 2.0  # s that the processes may take to leave after the outcome
+INTERRUPT = 1.0  # s that the world may take to end an interrupted run; all is over within 2 s
+
+
+@dataclass(slots=True)
+class SwarmRun:
+    """One run over Zenoh."""
+
+    run: str
+    scenario: Scenario
+    record: Path | None = None
+    view: bool = False
+    children: Children | None = None  # while and after it runs
+
+    def execute(self, watcher: Watcher) -> Outcome:
+        """Start everything, watch it, clean up.
+
+        Raises:
+            SwarmFailure: a process failed, in one sentence.
+            KeyboardInterrupt: after an interrupted run was ended and cleaned up.
+        """
+        # Short: a unix socket's path has room for about 100 bytes.
+        folder = Path(tempfile.mkdtemp(prefix="odour-"))
+        children = self.children = Children(folder)
+        try:
+            return self._execute(folder, children, watcher)
+        finally:
+            children.end(LEAVE)
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def _execute(self, folder: Path, children: Children, watcher: Watcher) -> Outcome:
+        scenario = self.scenario
+        n = scenario.robots
+        endpoints = scenario.network.endpoints or make_endpoints(scenario, folder)
+        (folder / "scenario.json").write_bytes(msgspec.json.encode(scenario))
+        (folder / "endpoints.json").write_bytes(msgspec.json.encode(endpoints))
+        recorded = self.record is not None or self.view
+        children.start(
+            keys.WORLD,
+            "world_server",
+            ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else [])],
+        )
+        for i in range(n):
+            place = folder / f"place-{i}.json"
+            place.write_bytes(msgspec.json.encode(place_of(scenario, i, endpoints)))
+            children.start(keys.robot_name(i), "robot_agent", ["--run", self.run, "--place", str(place)])
+        if recorded:
+            output = ["--record", str(self.record)] if self.record is not None else []
+            children.start(
+                "recorder",
+                "deploy.recorder",
+                ["--run", self.run, "--folder", str(folder), *output, *(["--view"] if self.view else [])],
+            )
+        bus = ZenohBus(self.run, "launcher", token_of(self.run), listen=(), connect=(endpoints[0],))
+        try:
+            bus.subscribe(keys.PROGRESS, Progress)
+            bus.subscribe(keys.EVENTS, Event)
+            bus.subscribe(keys.OUTCOME, Outcome)
+            try:
+                outcome = self._watch(bus, children, watcher)
+            except KeyboardInterrupt:
+                self._interrupt(bus, children)
+                raise
+        finally:
+            bus.close()
+        if recorded and not children.wait(FLUSH, ["recorder"]):
+            raise SwarmFailure(f"the recorder did not finish writing within {FLUSH:g} s; {self.record} holds a part.")
+        children.wait(LEAVE)
+        if recorded and children.failed(["recorder"]):
+            words = children.members["recorder"].last_words()
+            raise SwarmFailure(f"the recorder failed: {words or 'without a word'}")
+        return outcome
+
+    def _watch(self, bus: Bus, children: Children, watcher: Watcher) -> Outcome:
+        begun = False
+        while True:
+            event = bus.receive(POLL)
+            if isinstance(event, Delivery):
+                message = event.message
+                if isinstance(message, Outcome):
+                    return message
+                if isinstance(message, Progress):
+                    begun = True
+                    watcher.progress(message)
+                elif isinstance(message, Event):
+                    watcher.event(message)
+            elif event is None or isinstance(event, Lost):
+                self._look_after(children, begun)
+
+    def _look_after(self, children: Children, begun: bool) -> None:
+        """Notice what cannot be mended: the world is gone, or somebody is before the run began."""
+        failed = children.failed([keys.WORLD] if begun else None)
+        if children.members[keys.WORLD].status is not None and not failed:
+            raise SwarmFailure("the world ended without an outcome.")
+        if failed:
+            # The others fail in consequence; the first in order of start is the cause, the world before the robots,
+            # unless it only complains that somebody is missing.
+            child = next((c for c in failed if c.name != keys.WORLD), failed[0])
+            how = f"status {child.status}" if (child.status or 0) > 0 else f"signal {-(child.status or 0)}"
+            raise SwarmFailure(f"{child.name} ended with {how}: {child.last_words() or 'it said nothing.'}")
+
+    def _interrupt(self, bus: Bus, children: Children) -> None:
+        """Let the world end the run and the recorder write what it has; all within two seconds."""
+        deadline = time.monotonic() + INTERRUPT
+        world = children.members[keys.WORLD]
+        if world.status is None:
+            world.process.terminate()
+        while time.monotonic() < deadline and world.status is None:
+            bus.receive(0.05)
+        children.wait(max(0.0, deadline - time.monotonic()), [n for n in children.members if n == "recorder"])

@@ -1,0 +1,90 @@
+"""The recorder as a process: linked to the world and to every robot, in nobody's way.
+
+Rules: it joins the bus first and loads Rerun afterwards; whatever it does takes the lowest priority, and what it is sent
+is best effort, so that the swarm's speed does not depend on it. It writes twice a second, so that a kill leaves what was
+written.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from deploy.recorder.recording import Recording
+from protocol import keys
+from protocol.bus import Bus, Delivery, Lost
+from protocol.errors import SwarmFailure
+from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
+from protocol.scenario import Scenario
+from protocol.shell import Stop, ignore_signals
+from protocol.zenoh_bus import ZenohBus, token_of
+
+FLUSH_PERIOD = 0.5  # wall-clock s
+
+
+@dataclass(slots=True)
+class RecorderProcess:
+    """The recorder on the wires, from its first link to the closed file."""
+
+    run: str
+    scenario: Scenario
+    endpoints: tuple[str, ...]  # the world's, then each robot's
+    record: Path | None
+    view: bool
+
+    def serve(self) -> None:
+        """Record until the world has told the outcome or is gone.
+
+        Raises:
+            OdourswarmError: the recording cannot be written.
+            SwarmFailure: the world was gone before the run began.
+        """
+        bus = ZenohBus(
+            self.run,
+            "recorder",
+            token_of(self.run),
+            listen=(),
+            connect=self.endpoints,
+            lease_ms=self.scenario.network.lease_ms,
+        )
+        try:
+            for key, kind in (
+                (keys.TRUTH, Truth),
+                (keys.FIELD, Field),
+                (keys.EVENTS, Event),
+                (keys.OUTCOME, Outcome),
+            ):
+                bus.subscribe(key, kind)
+            bus.subscribe(keys.HALT, Halt)
+            for i in range(self.scenario.robots):
+                bus.subscribe(keys.robot(i, keys.BELIEF), Belief)
+            with contextlib.suppress(OSError):
+                os.nice(19)  # this thread, and those that Rerun starts from it; the bus has its own already
+            recording = Recording(self.scenario, path=self.record, view=self.view, run=self.run)
+            try:
+                self._listen(bus, recording)
+            finally:
+                ignore_signals()
+                recording.close()
+        finally:
+            bus.close()
+
+    def _listen(self, bus: Bus, recording: Recording) -> None:
+        next_flush = time.monotonic() + FLUSH_PERIOD
+        try:
+            while True:
+                event = bus.receive(max(0.0, next_flush - time.monotonic()))
+                if isinstance(event, Delivery):
+                    recording.take(event.message)
+                    if isinstance(event.message, Outcome):
+                        return
+                elif isinstance(event, Lost) and event.name == keys.WORLD:
+                    raise SwarmFailure("the world is gone; the recording holds what was heard until then.")
+                if time.monotonic() >= next_flush:
+                    recording.flush()
+                    next_flush = time.monotonic() + FLUSH_PERIOD
+        except Stop:
+            return

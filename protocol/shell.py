@@ -1,0 +1,60 @@
+"""What the shells of all processes share: being told to stop, and never outliving the launcher.
+
+Rules: only shells (`process.py` modules, the launcher) use this; nothing pure does. A process that is told to stop
+raises `Stop` in its main thread, wherever it waits.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from types import FrameType
+from typing import BinaryIO, NoReturn
+
+EXIT_OK, EXIT_BAD_INPUT, EXIT_FAILED = 0, 2, 3
+
+
+class Stop(BaseException):
+    """The process was told to stop; not an `Exception`, so that no handler of errors swallows it."""
+
+
+def stop_on_signals(*, leash: bool) -> None:
+    """Make SIGTERM and SIGINT raise `Stop`; with `leash`, the end of standard input too.
+
+    The leash is a pipe that the launcher holds open: when the launcher is gone, however it died, the pipe ends and the
+    process stops. SIGINT is ignored on a leash: a Ctrl-C at the terminal is the launcher's to handle.
+    """
+    signal.signal(signal.SIGTERM, _raise_stop)
+    signal.signal(signal.SIGINT, signal.SIG_IGN if leash else _raise_stop)
+    if leash:
+        threading.Thread(target=_watch, args=(sys.stdin.buffer,), daemon=True, name="leash").start()
+
+
+def ignore_signals() -> None:
+    """From here on the process is ending by itself; do not interrupt that."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def leave(status: int) -> NoReturn:
+    """End the process now.
+
+    The middleware's threads can keep an interpreter from ending while a peer hangs; everything of ours is closed and
+    flushed before this is called.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def _raise_stop(signum: int, frame: FrameType | None) -> NoReturn:
+    raise Stop(f"signal {signum}")
+
+
+def _watch(pipe: BinaryIO) -> None:
+    while pipe.read(4096):
+        pass
+    # Raising in the main thread is what a signal does; os.kill also works on Windows for SIGTERM by ending the process.
+    os.kill(os.getpid(), signal.SIGTERM)
