@@ -7,13 +7,18 @@ raises `Stop` in its main thread, wherever it waits.
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import threading
+from pathlib import Path
 from types import FrameType
 from typing import BinaryIO, NoReturn
 
 EXIT_OK, EXIT_BAD_INPUT, EXIT_FAILED = 0, 2, 3
+
+
+_launcher_gone = threading.Event()
 
 
 class Stop(BaseException):
@@ -30,6 +35,12 @@ def stop_on_signals(*, leash: bool) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN if leash else _raise_stop)
     if leash:
         threading.Thread(target=_watch, args=(sys.stdin.buffer,), daemon=True, name="leash").start()
+
+
+def clean_up_after_launcher(folder: Path) -> None:
+    """Remove the run's folder if the launcher, whose business that is, is gone."""
+    if _launcher_gone.is_set():
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def ignore_signals() -> None:
@@ -56,5 +67,6 @@ def _raise_stop(signum: int, frame: FrameType | None) -> NoReturn:
 def _watch(pipe: BinaryIO) -> None:
     while pipe.read(4096):
         pass
+    _launcher_gone.set()
     # Raising in the main thread is what a signal does; os.kill also works on Windows for SIGTERM by ending the process.
     os.kill(os.getpid(), signal.SIGTERM)

@@ -10,7 +10,7 @@ import msgspec
 
 from protocol.errors import OdourswarmError
 from protocol.scenario.place import RobotPlace
-from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, leave, stop_on_signals
+from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, clean_up_after_launcher, leave, stop_on_signals
 from robot_agent.process import RobotProcess
 
 
@@ -30,6 +30,8 @@ def main() -> int:
         return EXIT_FAILED
     except Stop:
         return EXIT_OK
+    finally:
+        clean_up_after_launcher(given.place.parent)
     return EXIT_OK
 
 

@@ -90,7 +90,8 @@ class RobotProcess:
         drive = bus.publisher(keys.robot(i, keys.DRIVE), reliable=True)
         last_word = bus.publisher(keys.robot(i, keys.REPORT), reliable=True)
         agent = Agent(view)
-        watched = _Watched(bus, agent, bus.publisher(keys.robot(i, keys.BELIEF), reliable=False), drive)
+        belief = keys.robot(i, keys.BELIEF)
+        watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), drive)
         return RobotSession(agent, tell, watched.drive), last_word
 
     def _link_up(self, bus: Bus, view: RobotScenario) -> None:
@@ -155,12 +156,13 @@ class _Watched:
 
     bus: Bus
     agent: Agent
+    key: str
     tell: Callable[[Belief], None]
     send: Callable[[Drive], None]
 
     def drive(self, drive: Drive) -> None:
         self.send(drive)
         # After the drive: the swarm does not wait for telemetry.
-        if self.agent.decision_due:
+        if self.agent.decision_due and self.bus.matched(self.key, ()):
             links = tuple(sorted(j for name in self.bus.links() if (j := keys.robot_of(name)) is not None))
             self.tell(self.agent.belief(links, self.bus.counters.dropped, self.bus.counters.refused))

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from deploy.cli.options import complain
+from deploy.recorder.mend import mend
 from protocol.errors import ScenarioError
 from protocol.shell import EXIT_BAD_INPUT
 
@@ -22,5 +23,7 @@ def view(
     if not file.is_file():
         complain(ScenarioError(f"there is no recording {file}; make one with `odourswarm run --record {file}`."))
         raise typer.Exit(EXIT_BAD_INPUT)
+    # A recorder that was killed may have left half a message at the end, which the viewer does not forgive.
+    mend(file)
     command = [sys.executable, "-m", "rerun", "--memory-limit", "25%", *(["--web-viewer"] if web else []), str(file)]
     raise typer.Exit(subprocess.run(command, check=False).returncode)

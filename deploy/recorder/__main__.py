@@ -11,7 +11,7 @@ import msgspec
 from deploy.recorder.process import RecorderProcess
 from protocol.errors import OdourswarmError
 from protocol.scenario import Scenario
-from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, leave, stop_on_signals
+from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, clean_up_after_launcher, leave, stop_on_signals
 
 
 def main() -> int:
@@ -33,6 +33,8 @@ def main() -> int:
         return EXIT_FAILED
     except Stop:
         return EXIT_OK
+    finally:
+        clean_up_after_launcher(given.folder)
     return EXIT_OK
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun.blueprint.api import VisualizerLike
+from rerun.encodings import EntityPathLike
 
 from deploy.recorder import palette
 from deploy.recorder.chunks import SIM_TIME
@@ -11,7 +13,7 @@ from protocol.scenario import Scenario
 
 MARGIN = 0.06  # of the arena, on every side
 
-LEGEND = 10  # robots; with more of them a legend hides the plot
+LEGEND = 10  # robots; more of them crowd legends and pictures
 
 
 def blueprint(scenario: Scenario, *, live: bool) -> rrb.Blueprint:
@@ -69,6 +71,10 @@ def _arena(scenario: Scenario) -> rrb.Spatial2DView:
         start=rr.TimeRangeBoundary.infinite(),
         end=rr.TimeRangeBoundary.cursor_relative(seconds=0.0),
     )
+    overrides: dict[EntityPathLike, VisualizerLike] = {"robots/trail": past}
+    if scenario.robots > LEGEND:
+        # Fifty circles hide everything else; they are there to be switched on.
+        overrides["robots/uncertainty"] = rrb.EntityBehavior(visible=False)
     return rrb.Spatial2DView(
         origin="/",
         contents=["/arena/**", "/source/**", "/links/**", "/robots/**"],
@@ -78,7 +84,7 @@ def _arena(scenario: Scenario) -> rrb.Spatial2DView:
             x_range=[arena.x_min - across, arena.x_max + across],
             y_range=[arena.y_min - down, arena.y_max + down],
         ),
-        overrides={"robots/trail": past},
+        overrides=overrides,
     )
 
 

@@ -1,8 +1,8 @@
 """Beliefs of many robots as one row per decision, although they arrive in any order across the robots.
 
-Rules: pure; rows come out in the order of time and never change afterwards. A row waits for the robots that may still
-speak, but no longer than `PATIENCE` decisions: a robot that is dead, hung or never started holds nobody up. What a
-robot said last stays valid for `VALID` decisions, so that one lost message makes no gap.
+Rules: pure; rows come out in the order of time and never change afterwards. A row waits for the robots that
+may still speak, but no longer than `PATIENCE` decisions: a robot that is dead, hung or never started holds
+nobody up. What a robot said last stays valid for `VALID` decisions, so that one lost message makes no gap.
 """
 
 from __future__ import annotations

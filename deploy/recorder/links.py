@@ -1,7 +1,8 @@
 """The communication graph as it is: which declared links carry, are silent, or are broken.
 
-Rules: pure. A link is a pair of robots; it is up when both live and neither of them, as it last said, misses the other;
-it is heard when, in every declared direction, the listener used the other's state in its last decision.
+Rules: pure. A link is a pair of robots; it is up when both live and neither of them, as it last said, misses
+the other; it is heard when, in every declared direction, the listener used the other's state in its last
+decision.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ class LinkWatch:
         self._linked = np.zeros((n, n), dtype=np.bool_)
         self._heard = np.zeros((n, n), dtype=np.bool_)
         self._spoke = np.full(n, -np.inf)
+        self._speaks = np.zeros(n, dtype=np.bool_)  # alive, and has spoken lately
         self._valid = VALID * period + 1e-6
         self._waiting: list[Belief] = []
 
@@ -54,7 +56,8 @@ class LinkWatch:
     @property
     def undeclared(self) -> NDArray[np.intp]:
         """Links that exist now though nobody declared them, (U, 2): there should be none."""
-        return np.argwhere(np.triu((self._linked | self._linked.T) & ~self._either))
+        linked = self._linked & self._speaks[:, None] & self._speaks
+        return np.argwhere(np.triu((linked | linked.T) & ~self._either, k=1))
 
     def hear(self, beliefs: Sequence[Belief]) -> None:
         """Take what robots said; it counts from its own time on."""
@@ -66,7 +69,7 @@ class LinkWatch:
         """HEARD, SILENT or BROKEN for each of `pairs` at time `t` with the robots `alive`, (N,)."""
         self._listen(t)
         a, b, linked, heard, declared = self._a, self._b, self._linked, self._heard, self._declared
-        speaks = (t - self._spoke <= self._valid) & alive
+        self._speaks = speaks = (t - self._spoke <= self._valid) & alive
         up = alive[a] & alive[b] & (linked[a, b] | ~speaks[a]) & (linked[b, a] | ~speaks[b])
         used = (speaks[a] & heard[a, b]) | ~declared[a, b]
         used &= (speaks[b] & heard[b, a]) | ~declared[b, a]

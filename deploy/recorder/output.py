@@ -1,12 +1,13 @@
 """The file: a Rerun stream of its own, handed to the operating system whenever it is asked to.
 
-A chunk costs some 1.5 kB besides its numbers, so that a long run with many flushes is mostly chunks; such a file is
-packed when it is closed. A file that was never closed is as readable, only larger and slower to open.
+A chunk costs some 1.5 kB besides its numbers, so that a long run with many flushes is mostly chunks; such a
+file is packed when it is closed. A file that was never closed is as readable, only larger and slower to open.
 """
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -19,8 +20,19 @@ from rerun.chunk import Chunk
 from protocol.errors import OdourswarmError
 
 APPLICATION = "odourswarm"
-MANY = 1000  # chunks: a file with more of them is packed
+MANY = 400  # chunks: a file with more of them is packed
+WRITING = 15.0  # s that the disk may take
 PACKING = 30.0  # s that packing may take; it takes less than one
+
+
+def leave_behind(stream: rr.RecordingStream) -> None:
+    """Never touch `stream` again.
+
+    Rerun would wait for ever for a disk that is full or a viewer that does not read: when the stream is
+    closed, when it is collected, and when the process ends.
+    """
+    rr.unregister_shutdown()
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(stream))
 
 
 class RecordingFile:
@@ -51,15 +63,16 @@ class RecordingFile:
     def write(self, chunks: Sequence[Chunk]) -> None:
         """Append `chunks` and hand them to the operating system.
 
-        Raises: OdourswarmError when the disk does not take them.
+        Raises: OdourswarmError when the disk does not take them; the file is lost for what comes after.
         """
+        self._chunks += len(chunks)
         try:
-            self._chunks += len(chunks)
             self._stream.send_chunks(chunks)
-            self._stream.flush()
+            self._stream.flush(timeout_sec=WRITING)
         except (RuntimeError, ValueError, OSError) as error:
+            leave_behind(self._stream)
             raise OdourswarmError(
-                f"cannot go on recording to {self._path}: {error}; is the disk full?"
+                f"cannot go on recording to {self._path} ({error}); is the disk full? It holds the run so far."
             ) from None
 
     def close(self) -> None:

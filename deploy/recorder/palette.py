@@ -1,13 +1,13 @@
 """Colours, as 0xRRGGBBAA: one per robot, the same in the picture and in the plots.
 
-The first seven are those of Okabe and Ito, which the colour-blind tell apart, with their dark blue lightened for the
-dark background; further robots get lighter and darker shades of them.
+The first seven are those of Okabe and Ito, which the colour-blind tell apart, with their dark blue lightened
+for the dark background; further robots get lighter and darker shades of them.
 """
 
 from __future__ import annotations
 
 _BASE = (0x56B4E9, 0xE69F00, 0x1FB58A, 0xD98CB3, 0xF0E442, 0xE8703A, 0x6F8FF0)
-_SHADES = (0.0, 0.5, -0.35, 0.25, -0.18, 0.7, -0.5, 0.4)  # towards white above 0, towards black below
+_SHADES = (0.0, 0.5, -0.3, 0.25, 0.75, -0.15, 0.62, 0.38)  # towards white above 0, towards black below
 
 DEAD = 0x6B7078FF
 TEXT = 0xC9CED6FF
@@ -26,7 +26,7 @@ MODES = {"search": 0x4C78A8FF, "trace": 0x3F9D6AFF, "lost": 0xD08A2EFF, "dead": 
 
 
 def faint(colour: int, share: float) -> int:
-    """`colour` on the background as if it covered only `share` of it; Rerun's lines and points do not blend."""
+    """`colour` on the background as if it covered only `share` of it: Rerun's lines do not blend."""
     mixed = (
         round(b + (c - b) * share) for c, b in zip(_channels(colour), _channels(BACKGROUND), strict=True)
     )

@@ -1,12 +1,13 @@
 """One run as a recording: messages go in, a .rrd file and a live picture come out.
 
-Rules: `take` only keeps the message, so that nothing waits for drawing; all work is in `flush`, which may be called as
-often as one likes: a process that is killed leaves a file that is readable up to the last flush. Rerun is loaded when a
-`Recording` is made and not before.
+Rules: `take` only keeps the message, so that nothing waits for drawing; all work is in `flush`, which may be
+called as often as one likes: a process that is killed leaves a file that is readable up to the last flush.
+Rerun is loaded when a `Recording` is made and not before.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
     from deploy.recorder.output import RecordingFile
     from deploy.recorder.viewer import LiveViewer
+
+
+# When a viewer is closed, we say so in one sentence; Rerun would say it in several.
+_QUIET = "warn,re_grpc_client=off,re_sdk::recording_stream=off,re_quota_channel=off"
 
 
 def _to_stderr(sentence: str) -> None:
@@ -50,6 +55,7 @@ class Recording:
         """
         if path is None and not view:
             raise OdourswarmError("a recording needs a file (--record FILE.rrd), a viewer (--view), or both.")
+        os.environ.setdefault("RUST_LOG", _QUIET)
         from deploy.recorder.blueprint import blueprint  # noqa: PLC0415 - loads rerun
         from deploy.recorder.conversion import Batch, Conversion  # noqa: PLC0415
         from deploy.recorder.output import RecordingFile  # noqa: PLC0415
@@ -112,7 +118,10 @@ class Recording:
     def _put(self, chunks: list[Chunk]) -> None:
         if not chunks:
             return
-        if self._file is not None:
-            self._file.write(chunks)
         if self._viewer is not None:
             self._viewer.offer(chunks)
+        file = self._file
+        if file is not None:
+            self._file = None  # unless it takes them
+            file.write(chunks)
+            self._file = file

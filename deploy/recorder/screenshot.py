@@ -1,7 +1,8 @@
 """`python -m deploy.recorder.screenshot FILE.rrd OUT.png`: a recording as a picture, without a display.
 
-Rules: only for people and documentation, no run needs it. Rerun draws in a viewer without a window, which needs a Vulkan
-driver; a software one will do (Debian: mesa-vulkan-drivers). The viewer's remote control is experimental in Rerun.
+Rules: only for people and documentation, no run needs it. Rerun draws in a viewer without a window, which
+needs a Vulkan driver; a software one will do (Debian: mesa-vulkan-drivers). The viewer's remote control is
+experimental in Rerun.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 from rerun.experimental import ViewerClient
 
 from deploy.recorder.chunks import SIM_TIME
+from deploy.recorder.mend import mend
 from protocol.errors import OdourswarmError
 
 SETTLE = 2.0  # s in which the viewer's plots and time panel come to rest
@@ -29,6 +31,7 @@ def screenshot(recording: Path, picture: Path, at: float | None) -> None:
     """
     if not recording.is_file():
         raise OdourswarmError(f"there is no recording {recording}.")
+    mend(recording)
     try:
         with ViewerClient.spawn(headless=True, port=_free_port(), memory_limit="1GiB") as viewer:
             viewer.open(str(recording.resolve()))

@@ -34,6 +34,19 @@ class Track:
     def __getitem__(self, rows: slice) -> Track:
         return Track(self.ticks[rows], self.t[rows], self.robots[rows])
 
+    def then(self, later: Track) -> Track:
+        """This and `later`, which begins when this has ended."""
+        pairs = zip(self._columns(), later._columns(), strict=True)
+        return Track(*(np.concatenate(pair) for pair in pairs))
+
+    def last(self, seconds: float) -> Track:
+        """The last `seconds` of this."""
+        since = int(np.searchsorted(self.t, self.t[-1] - seconds)) if len(self) else 0
+        return self[since:]
+
+    def _columns(self) -> tuple[Ticks, Floats, Floats]:
+        return self.ticks, self.t, self.robots
+
     @property
     def points(self) -> Floats:
         """Positions, (K, N, 2), m."""
@@ -69,7 +82,7 @@ class Gaps:
     def take(self, truths: Sequence[Truth]) -> None:
         """Count messages that arrived, in any order."""
         self._received += len(truths)
-        self._highest = max((truth.count for truth in truths), default=self._highest)
+        self._highest = max(self._highest, *(truth.count for truth in truths), -1)
 
     @property
     def sent(self) -> int:

@@ -1,8 +1,8 @@
 """The live viewer: a window that is fed by a thread and cannot hold anybody up.
 
-Rules: `offer` never waits. A viewer that is slow misses parts, a viewer that is closed, stuck or cannot open is given
-up with one sentence, and recording goes on: Rerun's connection blocks its sender when the viewer does not read, so
-only this thread ever touches it, and it asks for an acknowledgement before it sends more.
+Rules: `offer` never waits. A viewer that is slow misses parts, a viewer that is closed, stuck or cannot open
+is given up with one sentence, and recording goes on: Rerun's connection blocks its sender when the viewer
+does not read, so only this thread ever touches it, and it asks for an acknowledgement before it sends more.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from rerun.chunk import Chunk
 
-from deploy.recorder.output import APPLICATION
+from deploy.recorder.output import APPLICATION, leave_behind
 
 PORT = 9876  # Rerun's own: a viewer that is already open there is used again
 MEMORY = "1GiB"  # Rerun's default is three quarters of the machine
@@ -41,6 +41,7 @@ class LiveViewer:
         self._missed = False
         self._over = False  # given up: what is offered is thrown away
         self._closing = threading.Event()
+        self._process: subprocess.Popen[bytes] | None = None
         # The stream lives in the thread's frame only: if it is stuck, nothing waits for it at the end of the process.
         self._thread = threading.Thread(
             target=self._feed, args=(run, name, blueprint), name="viewer", daemon=True
@@ -63,18 +64,22 @@ class LiveViewer:
         self._queue.put(None)
         self._thread.join(LEAVE + 1.0)
         if self._thread.is_alive():
-            # Rerun would wait at the end of the process for what the viewer does not take.
-            rr.unregister_shutdown()
+            rr.unregister_shutdown()  # or Rerun would wait for the viewer when the process ends
 
     def _feed(self, run: str, name: str, blueprint: rrb.Blueprint) -> None:
-        trouble = None
         try:
-            trouble = self._open() or self._send_all(run, name, blueprint)
+            trouble = self._open()
+            if trouble is None:
+                self._send_all(run, name, blueprint)
+            else:
+                self._give_up(trouble)
         except Exception as error:  # whatever the viewer does, the recording goes on
-            trouble = f"the viewer failed: {error}"
-        self._over = True
-        if trouble:
-            self._say(trouble)
+            self._give_up(f"the viewer failed: {error}")
+
+    def _give_up(self, sentence: str) -> None:
+        if not self._over:
+            self._over = True
+            self._say(sentence)
 
     def _open(self) -> str | None:
         """Make sure that a viewer listens; or why not."""
@@ -86,7 +91,7 @@ class LiveViewer:
         command += ["--memory-limit", MEMORY, "--server-memory-limit", MEMORY, "--expect-data-soon"]
         with tempfile.TemporaryFile() as words:
             # A session of its own: the window outlives the run, and a Ctrl-C in the terminal.
-            process = subprocess.Popen(
+            self._process = process = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -109,7 +114,7 @@ class LiveViewer:
         except OSError:
             return False
 
-    def _send_all(self, run: str, name: str, blueprint: rrb.Blueprint) -> str | None:
+    def _send_all(self, run: str, name: str, blueprint: rrb.Blueprint) -> None:
         stream = rr.RecordingStream(APPLICATION, recording_id=run)
         stream.connect_grpc(f"rerun+http://127.0.0.1:{self._port}/proxy")
         stream.send_recording_name(name)
@@ -117,8 +122,9 @@ class LiveViewer:
         while (chunks := self._queue.get()) is not None:
             stream.send_chunks(chunks)
             if (trouble := self._acknowledged(stream)) is not None:
-                return trouble
-        return None
+                leave_behind(stream)
+                self._give_up(trouble)
+                return
 
     def _acknowledged(self, stream: rr.RecordingStream) -> str | None:
         """Wait until the viewer has taken what was sent; or why it will not."""
@@ -135,5 +141,4 @@ class LiveViewer:
             if self._closing.is_set():
                 left -= time.monotonic() - before
                 if left <= 0.0:
-                    rr.unregister_shutdown()
                     return "the viewer does not answer; it did not get the end of the run."

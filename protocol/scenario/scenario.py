@@ -22,7 +22,7 @@ class Scenario(s.Table, frozen=True):
 
     seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
     robots: s.Count = 5  # N
-    algorithm: str = "dcs"
+    algorithm: str = "cfpso"
     topology: str = "ring"  # a name, or the path of a graph file
     preset: Literal["corrected", "literal"] = "corrected"
     case: Annotated[int, Meta(ge=0, le=9)] = 0  # of Table 4.6; 0: none

@@ -81,14 +81,17 @@ class Swarm:
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_left_behind():
-    folders = set(Path(tempfile.gettempdir()).glob("odour-*"))
-    yield
-    ours = psutil.Process().children(recursive=True)
-    modules = ("world_server", "robot_agent", "deploy.recorder", "deploy.cli")
-    left = [p.pid for p in ours if p.is_running() and any(m in " ".join(p.cmdline()) for m in modules)]
-    assert left == []
-    assert set(Path(tempfile.gettempdir()).glob("odour-*")) == folders
+def folder(monkeypatch):
+    """A temporary folder of the test's own, short enough for sockets; after the test it is empty and nobody lives."""
+    with tempfile.TemporaryDirectory(prefix="t-") as name:
+        monkeypatch.setattr(tempfile, "tempdir", name)
+        monkeypatch.setenv("TMPDIR", name)
+        yield Path(name)
+        ours = psutil.Process().children(recursive=True)
+        modules = ("world_server", "robot_agent", "deploy.recorder", "deploy.cli")
+        left = [p.pid for p in ours if p.is_running() and any(m in " ".join(p.cmdline()) for m in modules)]
+        assert left == []
+        assert list(Path(name).glob("odour-*")) == []
 
 
 @pytest.mark.parametrize(("algorithm", "topology"), [("cfpso", "ring"), ("dcs", "line"), ("simple", "all")])
@@ -169,8 +172,8 @@ def test_command_prints_one_object_and_nothing_else_there():
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_run_ends_all_processes_and_leaves_a_readable_recording(how, tmp_path):
-    recording = tmp_path / "run.rrd"
+def test_interrupted_run_ends_all_processes_and_leaves_a_readable_recording(how, folder):
+    recording = folder / "run.rrd"
     process = odourswarm("run", "--max-time", "5000", "--set", "search.after=stay", "--record", str(recording))
     try:
         wait_for(lambda: recording.exists() and recording.stat().st_size > 50_000, "the recording has grown")
@@ -184,7 +187,7 @@ def test_interrupted_run_ends_all_processes_and_leaves_a_readable_recording(how,
     assert verified.returncode == 0, verified.stderr
 
 
-def test_launcher_that_is_killed_takes_everyone_along():
+def test_launcher_that_is_killed_takes_everyone_along(folder):
     process = odourswarm("run", "--max-time", "5000", "--set", "search.after=stay")
     swarm: list[psutil.Process] = []
 
@@ -193,11 +196,10 @@ def test_launcher_that_is_killed_takes_everyone_along():
         return len(swarm) == 6
 
     wait_for(all_started, "world and robots have started")
-    folders = set(Path(tempfile.gettempdir()).glob("odour-*"))
     process.kill()
     process.communicate(timeout=DEADLINE)
     wait_for(lambda: not any(p.is_running() and p.status() != psutil.STATUS_ZOMBIE for p in swarm), "all have ended")
-    wait_for(lambda: not any(f.exists() for f in folders), "the run's folder is gone")
+    wait_for(lambda: not list(folder.glob("odour-*")), "the run's folder is gone")
 
 
 def free_ports(count: int) -> list[int]:

@@ -65,17 +65,21 @@ def describe(run: str, scenario: Scenario, outcome: Outcome | None) -> str:
         ("preset, seed", f"{s.preset}, {s.seed}"),
         ("scenario digest", f"`{scenario_digest(s)}`"),
     ]
-    text = f"# {run}\n\n" + _table(rows)
+    setting = f"\n\n### {run}\n\n{_table(rows)}\n"
     if outcome is None:
-        return text + "\n\nThe run has not ended, or the recorder did not see its end.\n"
-    return text + "\n\n## Outcome\n\n" + _table(_outcome(outcome)) + "\n\n" + _per_robot(outcome)
+        return "The run has not ended, or the recorder did not see its end." + setting
+    end = f"\n### Outcome\n\n{_table(_outcome(outcome))}\n\n{_per_robot(outcome)}"
+    return _verdict(outcome) + setting + end
+
+
+def _verdict(outcome: Outcome) -> str:
+    if outcome.found:
+        return f"The source was **found** by {robot_label(outcome.finder)} after {outcome.time:.2f} s."
+    return f"The source was **not found** in {outcome.time:.2f} s: {outcome.ended}."
 
 
 def _outcome(outcome: Outcome) -> list[tuple[str, str]]:
-    verdict = (
-        f"**found** by {robot_label(outcome.finder)}" if outcome.found else f"**not found**: {outcome.ended}"
-    )
-    rows = [("verdict", f"{verdict} at {outcome.time:.2f} s")]
+    rows = [("ended", f"{outcome.ended}, {outcome.time:.2f} s")]
     if outcome.first_detection is not None:
         rows.append(("first detection", f"{outcome.first_detection:.2f} s"))
     rows += [

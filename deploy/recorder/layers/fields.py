@@ -1,6 +1,7 @@
 """Wind as arrows and plume as filaments.
 
-Positions are rounded to 1/16 m and radii to 1/20 m: a tenth of a filament, invisible, and half the size of the file.
+Positions are rounded to 1/16 m and radii to 1/20 m: a tenth of a filament, invisible, and half the size of
+the file.
 """
 
 from __future__ import annotations

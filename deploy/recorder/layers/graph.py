@@ -1,4 +1,6 @@
-"""The communication graph between the robots as they move: links that are heard, silent or broken, and how many."""
+"""The communication graph between the robots as they move: links that are heard, silent or broken, and how
+many.
+"""
 
 from __future__ import annotations
 

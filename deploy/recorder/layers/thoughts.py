@@ -12,7 +12,7 @@ from rerun.chunk import Chunk
 
 from deploy.recorder import palette
 from deploy.recorder.chunks import colours, pixels, strips, temporal, timeless
-from deploy.recorder.decisions import Decision
+from deploy.recorder.decisions import PATIENCE, VALID, Decision
 from deploy.recorder.layers.bodies import series
 from deploy.recorder.track import Track
 from protocol.messages import Belief
@@ -31,6 +31,8 @@ class ThoughtLayer:
         self._source = (scenario.source.x, scenario.source.y)
         self._colours = [palette.robot_colour(i) for i in range(self._n)]
         self._faint = [palette.faint(colour, 0.45) for colour in self._colours]
+        self._memory = (PATIENCE + VALID) * scenario.timing.decision
+        self._past: Track | None = None  # where plans of decisions that had to wait started
         self._modes = [""] * self._n
         self._dead = [False] * self._n
 
@@ -56,13 +58,15 @@ class ThoughtLayer:
             yield from timeless(f"modes/{mode_lane(i)}", style)
 
     def rows(self, decisions: Sequence[Decision], track: Track) -> Iterator[Chunk]:
-        """Estimates, uncertainties and plans at `decisions`; plans start where `track` says the robots are."""
+        """Estimates, uncertainties and plans at `decisions`; plans start where the robots are in `track`."""
+        past = track if self._past is None else self._past.then(track)
+        self._past = past.last(self._memory)
         if decisions:
             t = np.array([d.t for d in decisions], dtype=np.float64)
             ticks = np.array([d.tick for d in decisions], dtype=np.int64)
             sure = [[b for b in d.beliefs.values() if b.has_estimate] for d in decisions]
             yield from self._estimates(sure, t, ticks)
-            yield from self._plans([list(d.beliefs.values()) for d in decisions], t, ticks, track)
+            yield from self._plans([list(d.beliefs.values()) for d in decisions], t, ticks, past)
             yield from temporal(ERROR, t, ticks, rr.Scalars.columns(scalars=self._errors(sure)))
         yield from self._lanes(decisions, track)
 

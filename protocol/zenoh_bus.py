@@ -1,0 +1,336 @@
+"""The bus over Zenoh: members are processes (or objects of one), links are sockets; a `protocol.bus.Bus`.
+
+Rules: the only module that imports zenoh. One session per member. Callbacks run in Zenoh's own threads and only deposit;
+frames are opened in the member's thread by `receive`. No queue of ours or Zenoh's ever makes a receiving thread wait.
+Nothing that a peer does raises here; nothing waits without a way out.
+
+Liveliness: a member announces itself when it first listens or looks around (`receive`, `ask`, `links`, `matched`), that
+is after its subscriptions; its neighbours learn of the subscriptions first. A crash is seen when the socket closes, a
+hang when a link was silent for the lease.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from collections.abc import Callable, Sequence
+from threading import Lock
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from protocol.bus import Asked, BusEvent, Counters, Delivery, Lost, Publish, Seen
+from protocol.codec import MAX_FRAME, Codec, Refusal
+from protocol.errors import SwarmFailure
+from protocol.inbox import BIG_FRAME, Inbox
+from protocol.keys import ROOT
+from protocol.messages import Message
+from protocol.thread_state import keep_thread_state
+from protocol.zenoh_config import check_names, member_of, session_id, session_settings, token_of
+
+__all__ = ["ZenohBus", "token_of"]
+
+_log = logging.getLogger(__name__)
+_ALIVE = "alive/"
+_AGAIN = 0.05  # s between two questions while nobody is there to answer
+_MAX_WARNINGS = 100
+_REMOTE = zenoh.Locality.REMOTE
+# Sockets wake the runtime that opened them; when another one reads them every message costs a further change of
+# threads. So those that open, accept and read share one thread. Sending keeps its own: a receiving thread that waits
+# for the interpreter, or for room to send, must not silence us towards our neighbours.
+os.environ.setdefault("ZENOH_RUNTIME", "(rx: (worker_threads: 1), net: (handover: rx), acc: (handover: rx))")
+
+
+class ZenohBus:
+    """One member's access to a run over Zenoh.
+
+    Args:
+        run, token: name and number of the run (`token_of`); frames of other runs are refused.
+        name: "world", "robot/3", ...; at most 12 ASCII characters.
+        listen, connect: endpoints, "unixsock-stream/PATH" or "tcp/HOST:PORT"; whoever listens may come later.
+        lease_ms: a link that was silent for so long is dead.
+        lockstep: at most a few small messages to a peer are ever under way, as in lock-step. Links between members
+            that both say so are faster, and would hang with a peer that hangs if it were not true.
+
+    Raises:
+        ScenarioError: a name does not fit.
+        SwarmFailure: an endpoint cannot be used.
+    """
+
+    def __init__(
+        self,
+        run: str,
+        name: str,
+        token: int,
+        *,
+        listen: Sequence[str],
+        connect: Sequence[str],
+        lease_ms: int = 400,
+        lockstep: bool = False,
+    ) -> None:
+        check_names(run, name)
+        _start_log()
+        self.name = name
+        self.counters = Counters()
+        self._run, self._token = run, token
+        self._codec = Codec(token)
+        self._inbox = Inbox(self.counters)
+        self._prefix = f"{ROOT}/{run}/"
+        self._publishers: dict[str, Any] = {}
+        self._declared: list[Any] = []
+        self._members: dict[str, str] = {}  # session id -> member
+        self._alive: set[str] = set()
+        self._alive_lock = Lock()
+        self._announced = False
+        self._closed = False
+        self._warned: set[str] = set()
+        identity = session_id(run, token, name)
+        self._session = _open(session_settings(identity, listen, connect, lease_ms, lockstep=lockstep), name)
+        self._info = self._session.info
+        self._declared.append(
+            self._session.liveliness().declare_subscriber(
+                self._prefix + _ALIVE + "**", Callback(self._on_liveliness, indirect=False), history=True
+            )
+        )
+
+    def publisher(self, key: str, *, reliable: bool) -> Publish:
+        control = zenoh.CongestionControl.BLOCK if reliable else zenoh.CongestionControl.DROP
+        publisher = self._session.declare_publisher(
+            self._prefix + key, congestion_control=control, express=True, allowed_destination=_REMOTE
+        )
+        self._publishers[key] = publisher
+        put, encode, counters = publisher.put, self._codec.encode, self.counters
+
+        def publish(message: Message) -> None:
+            counters.sent += 1
+            try:
+                put(encode(message))
+            except zenoh.ZError as error:
+                if not self._closed:
+                    self._warn(key, f"cannot be sent: {error}")
+
+        return publish
+
+    def subscribe(self, key: str, *kinds: type[Message]) -> None:
+        offer, cut = self._inbox.offer, len(self._prefix)
+        whole = None if "*" in key else key
+        accepted = frozenset(kinds)
+
+        def on_sample(sample: Any) -> None:
+            keep_thread_state()
+            frame = sample.payload.to_bytes()
+            offer((whole or str(sample.key_expr)[cut:], accepted, frame, None), frame)
+
+        self._declared.append(
+            self._session.declare_subscriber(
+                self._prefix + key, Callback(on_sample, indirect=False), allowed_origin=_REMOTE
+            )
+        )
+
+    def serve(self, key: str, kind: type[Message]) -> None:
+        offer, cut = self._inbox.offer, len(self._prefix)
+        accepted = frozenset((kind,))
+
+        def on_query(query: Any) -> None:
+            keep_thread_state()
+            payload = query.payload
+            frame = b"" if payload is None else payload.to_bytes()
+            offer((str(query.key_expr)[cut:], accepted, frame, query), frame)
+
+        self._declared.append(
+            self._session.declare_queryable(
+                self._prefix + key, Callback(on_query, indirect=False), complete=True, allowed_origin=_REMOTE
+            )
+        )
+
+    def ask(self, key: str, question: Message, timeout: float) -> Message | None:
+        """First reply to a query, or None when nobody answered within `timeout` seconds.
+
+        While nobody is there who could answer the question is repeated: who serves it must be able to answer twice.
+        """
+        self._announce()
+        deadline = time.monotonic() + timeout
+        frame = self._codec.encode(question)
+        while (left := deadline - time.monotonic()) > 0 and not self._closed:
+            self.counters.sent += 1
+            reply = self._ask_once(key, frame, left)
+            if reply is not None:
+                return reply
+            time.sleep(max(0.0, min(_AGAIN, deadline - time.monotonic())))
+        return None
+
+    def receive(self, timeout: float | None) -> BusEvent | None:
+        if not self._announced:
+            self._announce()
+        if self._closed:
+            timeout = 0
+        deadline = time.monotonic() + timeout if timeout else 0.0
+        take = self._inbox.take
+        while (entry := take(timeout)) is not None:
+            if entry.__class__ is not tuple:
+                return entry  # type: ignore[no-any-return]  # Seen, Lost
+            event = self._opened(*entry)
+            if event is not None:
+                return event
+            if timeout:  # a refused frame is no event: wait on for what is left
+                timeout = max(0.0, deadline - time.monotonic())
+        return None
+
+    def links(self) -> frozenset[str]:
+        if not self._announced:
+            self._announce()
+        return frozenset(self._member(str(zid)) for zid in self._info.peers_zid())
+
+    def matched(self, key: str, names: Sequence[str]) -> bool:
+        """Whether the publication `key` has a subscriber and all of `names` are alive here.
+
+        Zenoh tells whether there is any subscriber. A member announces itself after its subscriptions, and in that
+        order they travel over a link; so a member that is alive here has its subscriptions known here.
+        """
+        if not self._announced:
+            self._announce()
+        publisher = self._publishers.get(key)
+        if publisher is None:
+            raise KeyError(f"{self.name} does not publish {key!r}")
+        return bool(publisher.matching_status) and self._alive.issuperset(names)
+
+    def close(self) -> None:
+        if self._closed:
+            return
+        self._closed = True
+        self._session.close()
+        self._inbox.push(None)  # whoever still waits in `receive` returns
+
+    # ---- the member's thread ----
+
+    def _announce(self) -> None:
+        if not self._announced and not self._closed:
+            self._announced = True
+            token = self._session.liveliness().declare_token(self._prefix + _ALIVE + self.name)
+            self._declared.append(token)
+
+    def _opened(self, key: str, kinds: frozenset[type[Message]], frame: bytes, query: Any) -> BusEvent | None:
+        if len(frame) > BIG_FRAME:
+            self._inbox.release()
+        message = self._codec.decode(frame)
+        if message.__class__ in kinds:
+            self.counters.received += 1
+            if query is None:
+                return Delivery(key, message)
+            return Asked(key, message, self._answer(query, key))
+        self.counters.refused += 1
+        reason = message.reason if isinstance(message, Refusal) else f"{type(message).__name__} is not said here"
+        self._warn(key, f"refused: {reason}")
+        if query is not None:
+            _drop(query)
+        return None
+
+    def _answer(self, query: Any, key: str) -> Callable[[Message], None]:
+        left = [query]
+
+        def answer(message: Message) -> None:
+            if left:
+                asked = left.pop()
+                self.counters.sent += 1
+                try:
+                    asked.reply(self._prefix + key, self._codec.encode(message), express=True)
+                except zenoh.ZError as error:
+                    if not self._closed:
+                        self._warn(key, f"cannot be answered: {error}")
+                finally:
+                    _drop(asked)
+
+        return answer
+
+    def _ask_once(self, key: str, frame: bytes, timeout: float) -> Message | None:
+        replies = Inbox(self.counters)
+
+        def on_reply(reply: Any) -> None:
+            keep_thread_state()
+            if reply.ok is not None:
+                payload = reply.ok.payload.to_bytes()
+                replies.offer(payload, payload)
+
+        try:
+            self._session.get(
+                self._prefix + key,
+                handler=Callback(on_reply, drop=lambda: replies.push(_END), indirect=False),
+                payload=frame,
+                timeout=timeout,
+                target=zenoh.QueryTarget.ALL,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                allowed_destination=_REMOTE,
+                express=True,
+            )
+        except zenoh.ZError as error:
+            self._warn(key, f"cannot be asked: {error}")
+            return None
+        deadline = time.monotonic() + timeout
+        while (left := deadline - time.monotonic()) > 0:
+            answer = replies.take(left)
+            if answer is None or answer is _END:
+                return None
+            message = self._codec.decode(answer)
+            if not isinstance(message, Refusal):
+                self.counters.received += 1
+                return message
+            self.counters.refused += 1
+            self._warn(key, f"reply refused: {message.reason}")
+        return None
+
+    def _member(self, identity: str) -> str:
+        name = self._members.get(identity)
+        if name is None:
+            name = self._members[identity] = member_of(self._run, self._token, identity)
+        return name
+
+    def _warn(self, key: str, text: str) -> None:
+        if key not in self._warned and len(self._warned) < _MAX_WARNINGS:
+            self._warned.add(key)
+            _log.warning("%s: %s %s", self.name, key, text)
+
+    # ---- Zenoh's threads ----
+
+    def _on_liveliness(self, sample: Any) -> None:
+        keep_thread_state()
+        name = str(sample.key_expr)[len(self._prefix) + len(_ALIVE) :]
+        came = sample.kind == zenoh.SampleKind.PUT
+        with self._alive_lock:
+            if name == self.name or (name in self._alive) == came:
+                return
+            if came:
+                self._alive.add(name)
+            else:
+                self._alive.discard(name)
+            self._inbox.push(Seen(name) if came else Lost(name))
+
+
+_END = object()
+
+
+def _drop(query: Any) -> None:
+    """Tell the asker that no (further) reply comes."""
+    query.drop()
+
+
+def _start_log() -> None:
+    """Let Zenoh speak only if the person asked for it; by itself it says nothing."""
+    level = os.environ.get("ODOURSWARM_LOG")
+    if level:
+        zenoh.init_log_from_env_or(level)
+    elif os.environ.get("RUST_LOG"):
+        zenoh.try_init_log_from_env()
+
+
+def _open(settings: dict[str, object], name: str) -> Any:
+    import json
+    settings = {**settings, **json.loads(os.environ.get("OD_CFG", "{}"))}
+    config = zenoh.Config()
+    for path, value in settings.items():
+        config.insert_json5(path, json.dumps(value))
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        raise SwarmFailure(f"{name} cannot listen at {settings['listen/endpoints']}: {error}") from error
