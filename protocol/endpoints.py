@@ -8,7 +8,6 @@ so cleaning up after a run means removing its directory, nothing else.
 from __future__ import annotations
 
 import os
-import shutil
 import socket
 import sys
 from contextlib import ExitStack
@@ -68,7 +67,7 @@ def tcp_endpoints(first: int, count: int, host: str = HOST) -> tuple[str, ...]:
     """
     if not 0 < first <= 65536 - count:
         raise ScenarioError(
-            f"network.port is {first}; with {count} processes it must be between 1 and {65536 - count}, or 0 for free ports."
+            f"network.port is {first}; for {count} processes it must be from 1 to {65536 - count}, or 0 for free ports."
         )
     return tuple(f"tcp/{host}:{first + k}" for k in range(count))
 
@@ -86,7 +85,3 @@ def make_endpoints(scenario: Scenario, folder: Path) -> tuple[str, ...]:
         return tuple(unix_endpoint(folder, name) for name in names)
     return tcp_endpoints(network.port, count) if network.port else free_tcp_endpoints(count)
 
-
-def remove_folder(folder: Path) -> None:
-    """Remove a run's directory with the sockets and lock files that killed processes left."""
-    shutil.rmtree(folder, ignore_errors=True)

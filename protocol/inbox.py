@@ -33,12 +33,13 @@ class Inbox:
         self._big = 0  # big frames waiting
         self._lock = Lock()  # of _big; small frames need none
 
-    def offer(self, entry: Any, frame: bytes) -> None:
-        """Queue `entry`, which holds `frame`, if there is room."""
+    def offer(self, entry: Any, frame: bytes) -> bool:
+        """Queue `entry`, which holds `frame`, if there is room; whether there was."""
         if self._size() >= MAX_ENTRIES or (len(frame) > BIG_FRAME and not self._room_for_big()):
             self._counters.dropped += 1
-        else:
-            self._put(entry)
+            return False
+        self._put(entry)
+        return True
 
     def push(self, entry: Any) -> None:
         """Queue `entry` always."""

@@ -48,13 +48,23 @@ class MemoryNetwork:
         """Living members that `name` is linked to, in the order of the declared links."""
         return tuple(other for other in self._linked.get(name, ()) if other in self._members)
 
+    def is_alive(self, bus: MemoryBus) -> bool:
+        """Whether `bus` is the living member of its name."""
+        return self._members.get(bus.name) is bus
+
     def member(self, name: str) -> MemoryBus:
         """The living member `name`."""
         return self._members[name]
 
-    def listeners(self, name: str, key: str) -> list[MemoryBus]:
-        """Living members linked to `name` that are subscribed to `key`."""
-        return [bus for other in self.peers(name) if (bus := self._members[other]).kinds_under(key)]
+    def peers_of(self, bus: MemoryBus) -> list[MemoryBus]:
+        """Living members that `bus` is linked to; none when it was killed, closed, or replaced by a later one."""
+        if not self.is_alive(bus):
+            return []
+        return [self._members[other] for other in self.peers(bus.name)]
+
+    def listeners(self, bus: MemoryBus, key: str) -> list[MemoryBus]:
+        """Peers of `bus` that are subscribed to `key`."""
+        return [other for other in self.peers_of(bus) if other.kinds_under(key)]
 
     def inject(self, name: str, key: str, frame: bytes) -> None:
         """Give member `name` raw bytes under `key`, as a stranger on the wires would."""
@@ -73,7 +83,7 @@ class MemoryBus:
         self._resolved: dict[str, tuple[type[Message], ...]] = {}
         self._served: dict[str, type[Message]] = {}
 
-    def publisher(self, key: str, *, reliable: bool) -> Publish:  # noqa: ARG002 - nothing is lost in memory
+    def publisher(self, key: str, *, reliable: bool) -> Publish:
         network, counters = self._network, self.counters
         codec = network.codec
         route: list[MemoryBus] = []
@@ -83,7 +93,7 @@ class MemoryBus:
             nonlocal version
             if version != network.version:
                 version = network.version
-                route[:] = network.listeners(self.name, key)
+                route[:] = network.listeners(self, key)
             counters.sent += 1
             if codec is None:
                 delivery = Delivery(key, message)
@@ -104,28 +114,35 @@ class MemoryBus:
     def serve(self, key: str, kind: type[Message]) -> None:
         self._served[key] = kind
 
-    def ask(self, key: str, question: Message, timeout: float) -> Message | None:  # noqa: ARG002
-        replies: list[Message] = []
-        for other in self._network.peers(self.name):
-            self._network.member(other).be_asked(key, question, replies)
-        return replies[0] if replies else None
+    def ask(self, key: str, question: Message, timeout: float) -> Message | None:
+        """Put a query to the peers that serve `key`.
 
-    def be_asked(self, key: str, question: Message, replies: list[Message]) -> None:
-        """Queue a query that a peer asks."""
-        if any(fnmatchcase(key, pattern) for pattern in self._served):
-            self.inbox.append(Asked(key, question, replies.append))
+        None, as if nobody answered in time: in one thread nobody can answer while the asker waits. (No member of an
+        in-memory run asks; there is nothing to join.)
+        """
+        for other in self._network.peers_of(self):
+            other.be_asked(key, question)
+        return None
 
-    def receive(self, timeout: float | None = 0) -> BusEvent | None:  # noqa: ARG002 - memory never makes one wait
+    def be_asked(self, key: str, question: Message) -> None:
+        """Queue a query that a peer asks; its answer comes too late for anybody."""
+        for pattern, kind in self._served.items():
+            if fnmatchcase(key, pattern) and isinstance(question, kind):
+                self.inbox.append(Asked(key, question, lambda answer: None))
+
+    def receive(self, timeout: float | None = 0) -> BusEvent | None:
         return self.inbox.popleft() if self.inbox else None
 
     def links(self) -> frozenset[str]:
-        return frozenset(self._network.peers(self.name))
+        return frozenset(bus.name for bus in self._network.peers_of(self))
 
     def matched(self, key: str, names: Sequence[str]) -> bool:
-        return all(name in self._network.peers(self.name) and key is not None for name in names)
+        listeners = {bus.name for bus in self._network.listeners(self, key)}
+        return bool(listeners) and listeners.issuperset(names)
 
     def close(self) -> None:
-        self._network.kill(self.name)
+        if self._network.is_alive(self):
+            self._network.kill(self.name)
 
     def take(self, delivery: Delivery) -> None:
         """Receive a message from a peer, or refuse it."""

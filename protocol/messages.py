@@ -7,7 +7,14 @@ was made, so that it can be handed on by reference in memory and by bytes over t
 
 from __future__ import annotations
 
-from msgspec import Struct
+from typing import Annotated
+
+from msgspec import Meta, Struct
+
+# The bounds are checked by the decoder; they also keep out what is not finite. Nothing we say in SI units comes near.
+Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
+MAX_RECORDS = 4096  # entries of one tuple
+RelayedState = tuple[int, int, Number, Number, Number, Number]  # robot, tick, x, y, vx, vy
 
 NEVER = -1.0  # a time that has not come yet
 
@@ -21,17 +28,17 @@ class Reading(Message, frozen=True, array_like=True, gc=False):
 
     robot: int
     tick: int
-    t: float  # simulated time, s
-    x: float  # centre position r, m
-    y: float
-    theta: float  # heading, rad
-    nu: float  # forward speed, m/s
-    omega: float  # turn rate, rad/s
-    wind_x: float  # local wind, m/s
-    wind_y: float
-    concentration: float  # ppt
-    hears: tuple[tuple[int, int], ...] = ()  # lock-step: the (neighbour, tick) states to wait for
-    wind_past: tuple[tuple[float, float], ...] = ()  # tick 0 only: wind recorded before the start, oldest first
+    t: Number  # simulated time, s
+    x: Number  # centre position r, m
+    y: Number
+    theta: Number  # heading, rad
+    nu: Number  # forward speed, m/s
+    omega: Number  # turn rate, rad/s
+    wind_x: Number  # local wind, m/s
+    wind_y: Number
+    concentration: Number  # ppt
+    hears: Annotated[tuple[tuple[int, int], ...], Meta(max_length=MAX_RECORDS)] = ()  # lock-step: the (neighbour, tick) states to wait for
+    wind_past: Annotated[tuple[tuple[Number, Number], ...], Meta(max_length=MAX_RECORDS)] = ()  # tick 0 only: wind recorded before the start, oldest first
 
 
 class Shared(Message, frozen=True, array_like=True, gc=False):
@@ -39,25 +46,25 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
 
     robot: int
     tick: int
-    x: float  # hand position x_i, m
-    y: float
-    vx: float  # hand velocity v_i, m/s
-    vy: float
-    fusion_x: float  # state of the fusion (3.26), m; meaningless until detected_at >= 0
-    fusion_y: float
-    first_detected_at: float  # when anyone first detected, as far as I heard, s; NEVER
-    detected_at: float  # when anyone last detected, as far as I heard, s; NEVER
-    best_concentration: float  # highest concentration that anyone met, as far as I heard, ppt
-    best_x: float  # and where, m
-    best_y: float
+    x: Number  # hand position x_i, m
+    y: Number
+    vx: Number  # hand velocity v_i, m/s
+    vy: Number
+    fusion_x: Number  # state of the fusion (3.26), m; meaningless until detected_at >= 0
+    fusion_y: Number
+    first_detected_at: Number  # when anyone first detected, as far as I heard, s; NEVER
+    detected_at: Number  # when anyone last detected, as far as I heard, s; NEVER
+    best_concentration: Number  # highest concentration that anyone met, as far as I heard, ppt
+    best_x: Number  # and where, m
+    best_y: Number
     search_leg: int  # crosswind search: leg number, who set its heading, the heading as a unit vector
     search_by: int
-    search_x: float
-    search_y: float
-    h_x: float  # my decision h^ic (3.31), m
-    h_y: float
-    relayed: tuple[tuple[int, int, float, float, float, float], ...] = ()  # passed on: (robot, tick, x, y, vx, vy)
-    virtual: tuple[float, ...] = ()  # an algorithm's own numbers (virtual position and velocity, charge, ...)
+    search_x: Number
+    search_y: Number
+    h_x: Number  # my decision h^ic (3.31), m
+    h_y: Number
+    relayed: Annotated[tuple[RelayedState, ...], Meta(max_length=MAX_RECORDS)] = ()  # states of others, passed on
+    virtual: Annotated[tuple[Number, ...], Meta(max_length=MAX_RECORDS)] = ()  # an algorithm's own numbers (virtual position and velocity, charge, ...)
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):
@@ -65,16 +72,16 @@ class Drive(Message, frozen=True, array_like=True, gc=False):
 
     robot: int
     tick: int
-    tau_left: float
-    tau_right: float
+    tau_left: Number
+    tau_right: Number
 
 
 class Report(Message, frozen=True, array_like=True, gc=False):
     """Robot to world, once, after `Halt`: final decision and what went over its wires."""
 
     robot: int
-    h_x: float
-    h_y: float
+    h_x: Number
+    h_y: Number
     has_estimate: bool
     sent: int
     received: int
@@ -94,19 +101,19 @@ class Belief(Message, frozen=True, array_like=True, gc=False):
 
     robot: int
     tick: int
-    t: float
+    t: Number
     mode: str  # "search" | "trace" | "lost" | ...
     has_estimate: bool
-    h_x: float  # decision h^ic, m
-    h_y: float
-    x_hat_x: float  # Kalman estimate, m
-    x_hat_y: float
-    variance: float  # P, m^2 per axis
-    fusion_x: float
-    fusion_y: float
-    target_x: float  # planned target p_i, m
-    target_y: float
-    detected_at: float
+    h_x: Number  # decision h^ic, m
+    h_y: Number
+    x_hat_x: Number  # Kalman estimate, m
+    x_hat_y: Number
+    variance: Number  # P, m^2 per axis
+    fusion_x: Number
+    fusion_y: Number
+    target_x: Number  # planned target p_i, m
+    target_y: Number
+    detected_at: Number
     heard: tuple[int, ...]  # neighbours whose state this decision used
     links: tuple[int, ...]  # robots that are physically linked to me now
     dropped: int
@@ -117,7 +124,7 @@ class Truth(Message, frozen=True, array_like=True, gc=False):
     """World to recorder: the robots as they are. Best effort."""
 
     tick: int
-    t: float
+    t: Number
     count: int  # running number of truth messages, so that gaps can be told
     robots: bytes  # float64 little-endian, shape (N, 9): x, y, theta, nu, omega, tau_left, tau_right, ppt, alive
 
@@ -126,7 +133,7 @@ class Field(Message, frozen=True, array_like=True, gc=False):
     """World to recorder: plume and wind as they are. Best effort."""
 
     tick: int
-    t: float
+    t: Number
     filaments: bytes  # float32 little-endian, shape (M, 3): x, y, radius
     wind: bytes  # float32 little-endian, shape (nx, ny, 2): velocity at the nodes of the arena
 
@@ -135,7 +142,7 @@ class Event(Message, frozen=True, array_like=True, gc=False):
     """World to recorder and launcher: something a person wants to know."""
 
     tick: int
-    t: float
+    t: Number
     robot: int  # -1: the world or the whole swarm
     text: str
 
@@ -144,25 +151,25 @@ class Progress(Message, frozen=True, array_like=True, gc=False):
     """World to launcher, some ten times a second of wall clock."""
 
     tick: int
-    t: float
+    t: Number
     live: int
     detections: int
-    closest: float  # smallest distance of a robot to the source so far, m
+    closest: Number  # smallest distance of a robot to the source so far, m
 
 
 class Outcome(Message, frozen=True, array_like=True, gc=False):
     """World to launcher: how the run ended; the keys of `odourswarm run --json`."""
 
     found: bool
-    time: float  # simulated s at the end of the run
+    time: Number  # simulated s at the end of the run
     finder: int  # -1: nobody
     ticks: int
-    wall_s: float
-    ticks_per_s: float
+    wall_s: Number
+    ticks_per_s: Number
     digest: str
-    distance_travelled: tuple[float, ...]  # m, per robot
-    estimate_error: tuple[float | None, ...]  # m, per robot, at the end; None: it has no estimate
-    min_pair_distance: float | None  # m; None with one robot
+    distance_travelled: tuple[Number, ...]  # m, per robot
+    estimate_error: tuple[Number | None, ...]  # m, per robot, at the end; None: it has no estimate
+    min_pair_distance: Number | None  # m; None with one robot
     run: str
     seed: int
     scenario_digest: str
@@ -170,7 +177,7 @@ class Outcome(Message, frozen=True, array_like=True, gc=False):
     messages: dict[str, int]  # sent, received, dropped, refused
     ended: str  # "found" | "time out" | "interrupted" | a failure, as a sentence
     failed: bool  # processes failed beyond what the scenario planned
-    first_detection: float | None  # s
+    first_detection: Number | None  # s
 
 
 class Ask(Message, frozen=True, array_like=True, gc=False):

@@ -16,7 +16,7 @@ _SCALE = 2.0**-53
 
 
 def key_for(seed: int, *address: int | str) -> int:
-    """128-bit key of an address; distinct addresses give independent keys."""
+    """128-bit key of an address; distinct addresses (of text without control characters) give independent keys."""
     # The type marks keep 1 and "1" apart; the separator keeps ("a", "b") and ("ab",) apart.
     text = "\x1f".join(f"i{part}" if isinstance(part, int) else f"s{part}" for part in (seed, *address))
     return int.from_bytes(blake2b(text.encode(), digest_size=16).digest(), "little")

@@ -6,6 +6,7 @@ raises `Stop` in its main thread, wherever it waits.
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import signal
@@ -41,6 +42,12 @@ def clean_up_after_launcher(folder: Path) -> None:
     """Remove the run's folder if the launcher, whose business that is, is gone."""
     if _launcher_gone.is_set():
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def settle_memory() -> None:
+    """Everything is set up: take it out of the garbage collector's rounds, which a lock-step would feel."""
+    gc.collect()
+    gc.freeze()
 
 
 def ignore_signals() -> None:

@@ -1,7 +1,7 @@
 """The bus over Zenoh: members are processes (or objects of one), links are sockets; a `protocol.bus.Bus`.
 
-Rules: the only module that imports zenoh. One session per member. Callbacks run in Zenoh's own threads and only deposit;
-frames are opened in the member's thread by `receive`. No queue of ours or Zenoh's ever makes a receiving thread wait.
+Rules: the only module that imports zenoh. One session per member. Callbacks run in Zenoh's own threads and only
+deposit; frames are opened in the member's thread by `receive`. No queue of ours ever makes a receiving thread wait.
 Nothing that a peer does raises here; nothing waits without a way out.
 
 Liveliness: a member announces itself when it first listens or looks around (`receive`, `ask`, `links`, `matched`), that
@@ -11,36 +11,38 @@ hang when a link was silent for the lease.
 
 from __future__ import annotations
 
+import json
 import logging
 import os
+import re
 import time
 from collections.abc import Callable, Sequence
-from threading import Lock
+from threading import Thread
 from typing import Any
 
 import zenoh
 from zenoh.handlers import Callback
 
-from protocol.bus import Asked, BusEvent, Counters, Delivery, Lost, Publish, Seen
-from protocol.codec import MAX_FRAME, Codec, Refusal
+from protocol.bus import Asked, BusEvent, Counters, Delivery, Publish
+from protocol.codec import Codec, Refusal
 from protocol.errors import SwarmFailure
 from protocol.inbox import BIG_FRAME, Inbox
 from protocol.keys import ROOT
 from protocol.messages import Message
+from protocol.roll import Roll
 from protocol.thread_state import keep_thread_state
-from protocol.zenoh_config import check_names, member_of, session_id, session_settings, token_of
+from protocol.zenoh_config import RUNTIME, check_names, member_of, session_id, session_settings, token_of
 
 __all__ = ["ZenohBus", "token_of"]
 
-_log = logging.getLogger(__name__)
+CLOSE_WITHIN = 2.0  # s
 _ALIVE = "alive/"
 _AGAIN = 0.05  # s between two questions while nobody is there to answer
 _MAX_WARNINGS = 100
 _REMOTE = zenoh.Locality.REMOTE
-# Sockets wake the runtime that opened them; when another one reads them every message costs a further change of
-# threads. So those that open, accept and read share one thread. Sending keeps its own: a receiving thread that waits
-# for the interpreter, or for room to send, must not silence us towards our neighbours.
-os.environ.setdefault("ZENOH_RUNTIME", "(rx: (worker_threads: 1), net: (handover: rx), acc: (handover: rx))")
+_END = object()  # no more replies
+_log = logging.getLogger(__name__)
+os.environ.setdefault("ZENOH_RUNTIME", RUNTIME)  # read when the first session opens
 
 
 class ZenohBus:
@@ -52,7 +54,7 @@ class ZenohBus:
         listen, connect: endpoints, "unixsock-stream/PATH" or "tcp/HOST:PORT"; whoever listens may come later.
         lease_ms: a link that was silent for so long is dead.
         lockstep: at most a few small messages to a peer are ever under way, as in lock-step. Links between members
-            that both say so are faster, and would hang with a peer that hangs if it were not true.
+            that both say so are faster, and a sender would hang with a peer that hangs if it were not true.
 
     Raises:
         ScenarioError: a name does not fit.
@@ -77,23 +79,18 @@ class ZenohBus:
         self._run, self._token = run, token
         self._codec = Codec(token)
         self._inbox = Inbox(self.counters)
+        self._roll = Roll(self._inbox.push)
         self._prefix = f"{ROOT}/{run}/"
         self._publishers: dict[str, Any] = {}
-        self._declared: list[Any] = []
-        self._members: dict[str, str] = {}  # session id -> member
-        self._alive: set[str] = set()
-        self._alive_lock = Lock()
+        self._declared: list[Any] = []  # kept, or Zenoh would undeclare them
+        self._names: dict[str, str] = {}  # session id -> member
         self._announced = False
         self._closed = False
         self._warned: set[str] = set()
         identity = session_id(run, token, name)
         self._session = _open(session_settings(identity, listen, connect, lease_ms, lockstep=lockstep), name)
         self._info = self._session.info
-        self._declared.append(
-            self._session.liveliness().declare_subscriber(
-                self._prefix + _ALIVE + "**", Callback(self._on_liveliness, indirect=False), history=True
-            )
-        )
+        self._watch_liveliness()
 
     def publisher(self, key: str, *, reliable: bool) -> Publish:
         control = zenoh.CongestionControl.BLOCK if reliable else zenoh.CongestionControl.DROP
@@ -108,8 +105,7 @@ class ZenohBus:
             try:
                 put(encode(message))
             except zenoh.ZError as error:
-                if not self._closed:
-                    self._warn(key, f"cannot be sent: {error}")
+                self._complain(key, f"cannot be sent: {error}")
 
         return publish
 
@@ -123,11 +119,9 @@ class ZenohBus:
             frame = sample.payload.to_bytes()
             offer((whole or str(sample.key_expr)[cut:], accepted, frame, None), frame)
 
-        self._declared.append(
-            self._session.declare_subscriber(
-                self._prefix + key, Callback(on_sample, indirect=False), allowed_origin=_REMOTE
-            )
-        )
+        handler = Callback(on_sample, indirect=False)
+        declare = self._session.declare_subscriber
+        self._declared.append(declare(self._prefix + key, handler, allowed_origin=_REMOTE))
 
     def serve(self, key: str, kind: type[Message]) -> None:
         offer, cut = self._inbox.offer, len(self._prefix)
@@ -137,24 +131,23 @@ class ZenohBus:
             keep_thread_state()
             payload = query.payload
             frame = b"" if payload is None else payload.to_bytes()
-            offer((str(query.key_expr)[cut:], accepted, frame, query), frame)
+            if not offer((str(query.key_expr)[cut:], accepted, frame, query), frame):
+                query.drop()
 
-        self._declared.append(
-            self._session.declare_queryable(
-                self._prefix + key, Callback(on_query, indirect=False), complete=True, allowed_origin=_REMOTE
-            )
-        )
+        handler = Callback(on_query, indirect=False)
+        declare = self._session.declare_queryable
+        self._declared.append(declare(self._prefix + key, handler, complete=True, allowed_origin=_REMOTE))
 
     def ask(self, key: str, question: Message, timeout: float) -> Message | None:
         """First reply to a query, or None when nobody answered within `timeout` seconds.
 
-        While nobody is there who could answer the question is repeated: who serves it must be able to answer twice.
+        While nobody answers, or who was asked is gone, the question is repeated: whoever serves it must be able to
+        answer it twice.
         """
         self._announce()
         deadline = time.monotonic() + timeout
         frame = self._codec.encode(question)
         while (left := deadline - time.monotonic()) > 0 and not self._closed:
-            self.counters.sent += 1
             reply = self._ask_once(key, frame, left)
             if reply is not None:
                 return reply
@@ -179,31 +172,32 @@ class ZenohBus:
         return None
 
     def links(self) -> frozenset[str]:
+        """Members that this one is physically linked to now; a peer that is not of this run is "stranger/{id}"."""
         if not self._announced:
             self._announce()
-        return frozenset(self._member(str(zid)) for zid in self._info.peers_zid())
+        return frozenset(self._name_of(str(zid)) for zid in self._info.peers_zid())
 
     def matched(self, key: str, names: Sequence[str]) -> bool:
-        """Whether the publication `key` has a subscriber and all of `names` are alive here.
+        """Whether the publication `key` has a subscriber and all of `names` are alive.
 
-        Zenoh tells whether there is any subscriber. A member announces itself after its subscriptions, and in that
-        order they travel over a link; so a member that is alive here has its subscriptions known here.
+        Zenoh tells only whether there is any subscriber. But members announce themselves after their subscriptions,
+        and in this order both travel over a link: of a member that is alive here the subscriptions are known here.
         """
         if not self._announced:
             self._announce()
-        publisher = self._publishers.get(key)
-        if publisher is None:
-            raise KeyError(f"{self.name} does not publish {key!r}")
-        return bool(publisher.matching_status) and self._alive.issuperset(names)
+        if self._closed:
+            return False
+        return bool(self._publishers[key].matching_status.matching) and self._roll.has(names)
 
     def close(self) -> None:
         if self._closed:
             return
         self._closed = True
-        self._session.close()
-        self._inbox.push(None)  # whoever still waits in `receive` returns
-
-    # ---- the member's thread ----
+        # Closing tells the peers, also one that hangs and takes nothing; whoever leaves does not wait for it.
+        closing = Thread(target=self._session.close, daemon=True, name="closing")
+        closing.start()
+        closing.join(CLOSE_WITHIN)
+        self._inbox.push(None)  # a `receive` that still waits returns
 
     def _announce(self) -> None:
         if not self._announced and not self._closed:
@@ -211,20 +205,32 @@ class ZenohBus:
             token = self._session.liveliness().declare_token(self._prefix + _ALIVE + self.name)
             self._declared.append(token)
 
+    def _watch_liveliness(self) -> None:
+        note, cut, me = self._roll.note, len(self._prefix + _ALIVE), self.name
+
+        def on_token(sample: Any) -> None:
+            keep_thread_state()
+            name = str(sample.key_expr)[cut:]
+            if name != me:
+                note(name, sample.kind == zenoh.SampleKind.PUT)
+
+        handler = Callback(on_token, indirect=False)
+        declare = self._session.liveliness().declare_subscriber
+        self._declared.append(declare(f"{self._prefix}{_ALIVE}**", handler, history=True))
+
     def _opened(self, key: str, kinds: frozenset[type[Message]], frame: bytes, query: Any) -> BusEvent | None:
+        """What a frame that arrived says; None when it is refused."""
         if len(frame) > BIG_FRAME:
             self._inbox.release()
         message = self._codec.decode(frame)
         if message.__class__ in kinds:
             self.counters.received += 1
-            if query is None:
-                return Delivery(key, message)
-            return Asked(key, message, self._answer(query, key))
+            return Delivery(key, message) if query is None else Asked(key, message, self._answer(query, key))
         self.counters.refused += 1
         reason = message.reason if isinstance(message, Refusal) else f"{type(message).__name__} is not said here"
-        self._warn(key, f"refused: {reason}")
+        self._complain(key, f"refused: {reason}")
         if query is not None:
-            _drop(query)
+            query.drop()
         return None
 
     def _answer(self, query: Any, key: str) -> Callable[[Message], None]:
@@ -237,10 +243,9 @@ class ZenohBus:
                 try:
                     asked.reply(self._prefix + key, self._codec.encode(message), express=True)
                 except zenoh.ZError as error:
-                    if not self._closed:
-                        self._warn(key, f"cannot be answered: {error}")
+                    self._complain(key, f"cannot be answered: {error}")
                 finally:
-                    _drop(asked)
+                    asked.drop()  # the asker need not wait for more
 
         return answer
 
@@ -253,10 +258,11 @@ class ZenohBus:
                 payload = reply.ok.payload.to_bytes()
                 replies.offer(payload, payload)
 
+        self.counters.sent += 1
         try:
             self._session.get(
                 self._prefix + key,
-                handler=Callback(on_reply, drop=lambda: replies.push(_END), indirect=False),
+                Callback(on_reply, drop=lambda: replies.push(_END), indirect=False),
                 payload=frame,
                 timeout=timeout,
                 target=zenoh.QueryTarget.ALL,
@@ -265,72 +271,52 @@ class ZenohBus:
                 express=True,
             )
         except zenoh.ZError as error:
-            self._warn(key, f"cannot be asked: {error}")
+            self._complain(key, f"cannot be asked: {error}")
             return None
         deadline = time.monotonic() + timeout
-        while (left := deadline - time.monotonic()) > 0:
-            answer = replies.take(left)
-            if answer is None or answer is _END:
-                return None
+        while (answer := replies.take(max(0.0, deadline - time.monotonic()))) not in {None, _END}:
             message = self._codec.decode(answer)
             if not isinstance(message, Refusal):
                 self.counters.received += 1
                 return message
             self.counters.refused += 1
-            self._warn(key, f"reply refused: {message.reason}")
+            self._complain(key, f"reply refused: {message.reason}")
         return None
 
-    def _member(self, identity: str) -> str:
-        name = self._members.get(identity)
+    def _name_of(self, identity: str) -> str:
+        name = self._names.get(identity)
         if name is None:
-            name = self._members[identity] = member_of(self._run, self._token, identity)
+            name = self._names[identity] = member_of(self._run, self._token, identity)
         return name
 
-    def _warn(self, key: str, text: str) -> None:
-        if key not in self._warned and len(self._warned) < _MAX_WARNINGS:
+    def _complain(self, key: str, text: str) -> None:
+        """Log once per key; after `close` nothing is a surprise."""
+        if not self._closed and key not in self._warned and len(self._warned) < _MAX_WARNINGS:
             self._warned.add(key)
             _log.warning("%s: %s %s", self.name, key, text)
 
-    # ---- Zenoh's threads ----
 
-    def _on_liveliness(self, sample: Any) -> None:
-        keep_thread_state()
-        name = str(sample.key_expr)[len(self._prefix) + len(_ALIVE) :]
-        came = sample.kind == zenoh.SampleKind.PUT
-        with self._alive_lock:
-            if name == self.name or (name in self._alive) == came:
-                return
-            if came:
-                self._alive.add(name)
-            else:
-                self._alive.discard(name)
-            self._inbox.push(Seen(name) if came else Lost(name))
-
-
-_END = object()
-
-
-def _drop(query: Any) -> None:
-    """Tell the asker that no (further) reply comes."""
-    query.drop()
+def _open(settings: dict[str, object], name: str) -> Any:
+    """A session with `settings`."""
+    config = zenoh.Config()
+    try:
+        for path, value in settings.items():
+            config.insert_json5(path, json.dumps(value))
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        listen = ", ".join(settings["listen/endpoints"])  # type: ignore[arg-type]
+        place = f"cannot listen at {listen}" if listen else "cannot join the run"
+        reason = re.sub(r" at \S+\.rs:\d+\.?", "", str(error)).strip(" .")  # without the places in Zenoh's source
+        raise SwarmFailure(
+            f"{name} {place}: {reason}; end the process that uses the endpoint, or choose others with "
+            f"network.transport, network.port or network.endpoints."
+        ) from error
 
 
 def _start_log() -> None:
-    """Let Zenoh speak only if the person asked for it; by itself it says nothing."""
+    """Let Zenoh speak (on standard output) only if the person asked for it; by itself it says nothing."""
     level = os.environ.get("ODOURSWARM_LOG")
     if level:
         zenoh.init_log_from_env_or(level)
     elif os.environ.get("RUST_LOG"):
-        zenoh.try_init_log_from_env()
-
-
-def _open(settings: dict[str, object], name: str) -> Any:
-    import json
-    settings = {**settings, **json.loads(os.environ.get("OD_CFG", "{}"))}
-    config = zenoh.Config()
-    for path, value in settings.items():
-        config.insert_json5(path, json.dumps(value))
-    try:
-        return zenoh.open(config)
-    except zenoh.ZError as error:
-        raise SwarmFailure(f"{name} cannot listen at {settings['listen/endpoints']}: {error}") from error
+        zenoh.try_init_log_from_env()  # type: ignore[no-untyped-call]

@@ -8,6 +8,7 @@ refuse a second one of the same name.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from hashlib import blake2b
 
@@ -15,7 +16,13 @@ from protocol.codec import MAX_FRAME
 from protocol.errors import ScenarioError
 from protocol.keys import RUN_NAME
 
+# Sockets wake the runtime that opened them; when another one reads them, every message costs a further change of
+# threads. So those that open, accept and read share one thread. Sending keeps its own: a receiving thread that waits
+# for the interpreter, or for room to send, must not silence us towards our neighbours.
+RUNTIME = "(rx: (worker_threads: 1), net: (handover: rx), acc: (handover: rx))"
+
 NAME_BYTES = 12  # of the 16 bytes of a session id; the rest tells the run
+_MEMBER = re.compile(r"[a-z][a-z0-9]*(/[0-9]+)?")
 STRANGER = "stranger/"  # before the id of a peer that is not of this run
 
 
@@ -32,11 +39,14 @@ def check_names(run: str, name: str) -> None:
     """
     if not RUN_NAME.fullmatch(run):
         raise ScenarioError(
-            f"the run's name is {run!r}; a name has 1 to 64 letters, digits, '.', '-' and '_', and begins with a letter "
+            f"the run's name is {run!r}; it must have 1 to 64 letters, digits, '.', '-' or '_', the first one a letter "
             f"or a digit."
         )
-    if not name.isascii() or not 0 < len(name) <= NAME_BYTES or name.startswith(STRANGER) or "\0" in name:
-        raise ScenarioError(f"a member's name is {name!r}; it must have 1 to {NAME_BYTES} ASCII characters.")
+    if len(name) > NAME_BYTES or not _MEMBER.fullmatch(name):
+        raise ScenarioError(
+            f'a member\'s name is {name!r}; it must be like "world" or "robot/12": small letters and digits, at most '
+            f"{NAME_BYTES} characters."
+        )
 
 
 def session_id(run: str, token: int, name: str) -> str:
@@ -85,7 +95,12 @@ def session_settings(
         "transport/shared_memory/enabled": False,
         "transport/link/tx/lease": lease_ms,
         "transport/link/rx/max_message_size": MAX_FRAME + 4096,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": 2000 * lease_ms,  # microseconds
+        # Room for the largest frame, so that sending one does not wait for the link; taken only when it is needed.
+        "transport/link/tx/queue/size/data": 16,
+        # A reliable sender waits no longer for a peer that takes nothing than a silent link lives.
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": 1000 * lease_ms,  # microseconds
+        "transport/link/tx/queue/congestion_control/drop/wait_before_drop": 1000,
+        "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 5000,
         "transport/unicast/qos/enabled": False,
         "transport/unicast/lowlatency": lockstep,
     }

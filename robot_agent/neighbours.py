@@ -49,17 +49,19 @@ class Neighbours:
 
     def others(self, tick: int) -> list[Placed]:
         """Everyone whose place is known, neighbours and relayed robots, moved on to `tick` at their last velocity."""
-        placed: list[Placed] = []
-        for _, s in self.fresh:
-            age = (tick - s.tick) * self._dt
-            placed.append((s.x + age * s.vx, s.y + age * s.vy, s.vx, s.vy))
+        placed = [self._now(tick, s.tick, s.x, s.y, s.vx, s.vy) for _, s in self.fresh]
         if self._relayed:
             direct = {s.robot for _, s in self.fresh}
             for j, k, x, y, vx, vy in self._relayed.values():
                 if j not in direct and tick - k <= self._relay_ticks:
-                    age = (tick - k) * self._dt
-                    placed.append((x + age * vx, y + age * vy, vx, vy))
+                    placed.append(self._now(tick, k, x, y, vx, vy))
         return placed
+
+    def _now(self, tick: int, then: int, x: float, y: float, vx: float, vy: float) -> Placed:
+        if then == tick:
+            return x, y, vx, vy
+        age = (tick - then) * self._dt
+        return x + age * vx, y + age * vy, vx, vy
 
     def relay(self, tick: int) -> tuple[Relayed, ...]:
         """States worth passing on, once a relay period: all that are not too old."""

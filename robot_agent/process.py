@@ -18,6 +18,7 @@ from protocol.scenario.place import RobotPlace
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
 from protocol.scenario import RobotScenario
+from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
 from robot_agent.report import report
@@ -122,13 +123,15 @@ class RobotProcess:
 
     def _take_part(self, bus: Bus, session: RobotSession, last_word: Callable[[Report], None]) -> None:
         halted = False
+        sender = {keys.robot(j, keys.SHARED): j for j, _ in self.place.scenario.row}
+        settle_memory()
         while True:
             event = bus.receive(FAREWELL if halted else None)
             if event.__class__ is Delivery:
                 message = event.message  # type: ignore[union-attr]
                 kind = message.__class__
                 if kind is Shared:
-                    if keys.robot_of(event.key) == message.robot:  # type: ignore[union-attr]
+                    if sender[event.key] == message.robot:  # type: ignore[union-attr]
                         session.take_shared(message)
                     else:
                         bus.counters.refused += 1

@@ -1,16 +1,16 @@
 """The robots' bodies: unicycles (1.6) driven by wheel torques, seen at the hand (1.8), (1.9).
 
-Rules: torques are constant over a tick, so speeds are clipped straight lines in time, and all robots and substeps of a
-tick are one array: no loop. Clipping is a closed form because a line that has met its limit stays there for the tick.
-Headings and positions take the speeds and the heading in the middle of each substep (second order). Nothing is random.
-There are no walls: a robot may drive out of the arena, where there is no odour to find, and it is up to it to return.
+Rules: torques are constant over a tick, so speeds are straight lines in time, clipped at their limits. Headings and
+positions take the mean speeds and the heading in the middle of each substep (second order). Nothing is random. There are
+no walls: a robot may drive out of the arena, where there is no odour to find, and it is up to it to return.
 
-Positions are complex numbers inside this module, x + i y: turning is a product.
+Plain floats, robot by robot: with tens of robots and five substeps numpy's calls cost more than the arithmetic, above all
+in a process whose caches other processes use in between.
 """
 
 from __future__ import annotations
 
-import math
+from math import ceil, cos, hypot, sin
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,86 +21,128 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def _as_pairs(points: Complex) -> Array:
-    """Complex numbers as (x, y) on a new last axis."""
-    pairs: Array = points.view(np.float64).reshape(*points.shape, 2)
-    return pairs
-
-
 class Path:
-    """Where the hands were during one tick."""
+    """Where the hands went in one tick."""
 
-    __slots__ = ("h", "track", "ways")
+    __slots__ = ("h", "rows", "ways")
 
-    def __init__(self, track: Complex, ways: Array, h: float) -> None:
-        self.track = track  # x + i y at the start of the tick and at the end of every substep, shape (N, S + 1), m
-        self.ways = ways  # how far each hand went, shape (N,), m
-        self.h = h  # length of a substep, s
+    def __init__(self, rows: list[list[complex]], ways: list[float], h: float) -> None:
+        self.rows = rows  # per robot x + i y at the start and at the ends of its steps, m
+        self.ways = ways  # how far each hand went, m
+        self.h = h  # length of a step, s
 
     @property
-    def hands(self) -> Array:
-        """Hand positions at the ends of the substeps, shape (N, S, 2), m."""
-        return _as_pairs(self.track[:, 1:])
+    def track(self) -> Complex:
+        """The rows as an array, shape (N, S + 1), m."""
+        return np.array(self.rows, dtype=np.complex128)
+
+
+class Unicycle:
+    """One robot."""
+
+    __slots__ = ("hand_x", "hand_y", "nu", "omega", "theta", "travelled", "x", "y")
+
+    def __init__(self, x: float, y: float, theta: float, hand: float) -> None:
+        self.x = x  # centre of the axle, m
+        self.y = y
+        self.theta = theta  # rad, not wrapped
+        self.nu = 0.0  # forward speed, m/s
+        self.omega = 0.0  # turn rate, rad/s
+        self.travelled = 0.0  # way of the hand so far, m
+        self.hand_x = x + hand * cos(theta)  # (1.8)
+        self.hand_y = y + hand * sin(theta)
+
+    def move(self, nu_dot: float, omega_dot: float, h: float, substeps: int, body: Body) -> float:
+        """Move through `substeps` substeps of `h` seconds with constant accelerations; how far the hand went, m."""
+        fastest, quickest = body.max_speed, body.max_turn
+        x, y, theta, nu, omega = self.x, self.y, self.theta, self.nu, self.omega
+        d_nu, d_omega, half = nu_dot * h, omega_dot * h, 0.5 * h
+        for _ in range(substeps):
+            nu_1 = nu + d_nu
+            if nu_1 > fastest:
+                nu_1 = fastest
+            elif nu_1 < -fastest:
+                nu_1 = -fastest
+            omega_1 = omega + d_omega
+            if omega_1 > quickest:
+                omega_1 = quickest
+            elif omega_1 < -quickest:
+                omega_1 = -quickest
+            turn = half * (omega + omega_1)
+            way = half * (nu + nu_1)
+            middle = theta + 0.5 * turn
+            x += way * cos(middle)
+            y += way * sin(middle)
+            theta += turn
+            nu, omega = nu_1, omega_1
+        self.x, self.y, self.theta, self.nu, self.omega = x, y, theta, nu, omega
+        hand_x, hand_y = x + body.hand * cos(theta), y + body.hand * sin(theta)
+        went = hypot(hand_x - self.hand_x, hand_y - self.hand_y)
+        self.hand_x, self.hand_y = hand_x, hand_y
+        self.travelled += went
+        return went
 
 
 class Bodies:
-    """N robots; every array attribute has shape (N,)."""
+    """N robots; every array attribute is a copy of shape (N,)."""
 
     def __init__(self, body: Body, timing: Timing, x: ArrayLike, y: ArrayLike, theta: ArrayLike) -> None:
         """Robots at rest with the centre of the axle at (x, y), m, heading theta, rad."""
-        self.theta = np.array(theta, dtype=np.float64)  # rad, not wrapped
-        self.travelled = np.zeros_like(self.theta)  # way of the hand so far, m
-        n = self.theta.size
+        places = np.array([x, y, theta], dtype=np.float64).T.tolist()
+        self.robots = [Unicycle(*place, body.hand) for place in places]
         self._body = body
-        self._speeds = np.zeros((2, n))  # nu, omega
-        self._centre = np.array(x, dtype=np.float64) + 1j * np.array(y, dtype=np.float64)
-        self._hand = self._centre + body.hand * np.exp(1j * self.theta)
-        self._braking: NDArray[np.bool_] | None = None
-        substeps = max(1, math.ceil(timing.tick / timing.substep - 1e-9))
+        self._braking: list[bool] = [False] * len(self.robots)
+        self._substeps = max(1, ceil(timing.tick / timing.substep - 1e-9))
         self._tick = timing.tick
-        self._h = timing.tick / substeps
-        self._sampled = np.append(self._h * (np.arange(substeps) + 0.5), timing.tick)
-        self._limits = np.array([[[body.max_speed]], [[body.max_turn]]])
-        self._lowest = -self._limits
+        self._h = timing.tick / self._substeps
 
     @property
     def x(self) -> Array:
         """Centre of the axle, m."""
-        x: Array = self._centre.real
-        return x
+        return np.array([r.x for r in self.robots])
 
     @property
     def y(self) -> Array:
         """Centre of the axle, m."""
-        y: Array = self._centre.imag
-        return y
+        return np.array([r.y for r in self.robots])
+
+    @property
+    def theta(self) -> Array:
+        """Heading, rad, not wrapped."""
+        return np.array([r.theta for r in self.robots])
 
     @property
     def nu(self) -> Array:
         """Forward speed, m/s."""
-        nu: Array = self._speeds[0]
-        return nu
+        return np.array([r.nu for r in self.robots])
 
     @property
     def omega(self) -> Array:
         """Turn rate, rad/s."""
-        omega: Array = self._speeds[1]
-        return omega
+        return np.array([r.omega for r in self.robots])
+
+    @property
+    def travelled(self) -> Array:
+        """Way of the hand so far, m."""
+        return np.array([r.travelled for r in self.robots])
 
     def hands(self) -> Array:
         """Hand positions (1.8):  x_i = r_i + L (cos theta, sin theta); shape (N, 2), m."""
-        return _as_pairs(self._hand.copy())
+        return np.array([(r.hand_x, r.hand_y) for r in self.robots])
 
     def hand_velocities(self) -> Array:
         """Hand velocities (1.9):  v_i = nu (cos theta, sin theta) + L omega (-sin theta, cos theta); (N, 2), m/s."""
-        nu, omega = self._speeds
-        return _as_pairs((nu + 1j * (self._body.hand * omega)) * np.exp(1j * self.theta))
+        L = self._body.hand
+        rows = []
+        for r in self.robots:
+            c, s = cos(r.theta), sin(r.theta)
+            rows.append((r.nu * c - L * r.omega * s, r.nu * s + L * r.omega * c))
+        return np.array(rows)
 
     def brake(self, mask: ArrayLike) -> None:
-        """From now on, until the next call, robots in `mask`, (N,) bool, ignore their torques and come to rest as fast
-        as their wheels can; the others do as they are told."""
-        braking = np.array(mask, dtype=bool)
-        self._braking = braking if braking.any() else None
+        """From now on robots in `mask`, (N,) bool, ignore their torques and come to rest as fast as their wheels can;
+        the others do as they are told. Until the next call."""
+        self._braking = [bool(held) for held in np.asarray(mask)]
 
     def step(self, tau_left: ArrayLike, tau_right: ArrayLike) -> Path:
         """Move through one tick.
@@ -112,63 +154,38 @@ class Bodies:
             tau_left, tau_right: wheel torques, shape (N,), N m; clipped to +-max_torque, each wheel by itself, or with
                 saturation "proportional" both by the same factor.
         Returns:
-            The way of the hands.
+            The way of the hands, in one step from tick to tick.
         """
-        body, h = self._body, self._h
-        b, axle, wheel_inertia = body.wheel_radius, body.axle, body.wheel_inertia
-        tau_l, tau_r = self._applied(np.array([tau_left, tau_right], dtype=np.float64))
-        rate = np.empty_like(self._speeds)
-        np.add(tau_l, tau_r, out=rate[0])
-        np.subtract(tau_r, tau_l, out=rate[1])
-        rate[0] *= b / (2.0 * wheel_inertia)
-        rate[1] *= b / (axle * wheel_inertia)
-        # nu and omega in the middle of all substeps, and at the end of the tick: (2, N, S + 1)
-        speeds = rate[:, :, None] * self._sampled
-        speeds += self._speeds[:, :, None]
-        np.maximum(speeds, self._lowest, out=speeds)
-        np.minimum(speeds, self._limits, out=speeds)
-        moves, turns = speeds[:, :, :-1] * h
-        # e^(i theta) in the middle and at the end of all substeps: (2, N, S)
-        turned = np.zeros((2, *turns.shape), dtype=np.complex128)
-        middle, end = turned.imag
-        np.add.accumulate(turns, axis=1, out=end)
-        end += self.theta[:, None]
-        turns *= 0.5
-        np.subtract(end, turns, out=middle)
-        self.theta = end[:, -1].copy()
-        ahead, hand_ahead = np.exp(turned, out=turned)
-        ahead *= moves
-        track = np.empty((moves.shape[0], self._sampled.size), dtype=np.complex128)
-        track[:, 0] = self._hand
-        points = track[:, 1:]
-        np.add.accumulate(ahead, axis=1, out=points)
-        points += self._centre[:, None]
-        self._centre = points[:, -1].copy()
-        hand_ahead *= body.hand
-        points += hand_ahead
-        ways: Array = np.add.reduce(np.abs(points - track[:, :-1]), axis=1)
-        self.travelled += ways
-        self._hand = track[:, -1].copy()
-        self._speeds = speeds[:, :, -1].copy()
-        return Path(track, ways, h)
+        body, h, substeps = self._body, self._h, self._substeps
+        forward = body.wheel_radius / (2.0 * body.wheel_inertia)
+        turning = body.wheel_radius / (body.axle * body.wheel_inertia)
+        rows, ways = [], []
+        for robot, braking, left, right in zip(self.robots, self._braking, tau_left, tau_right, strict=True):  # type: ignore[arg-type]
+            tau_l, tau_r = self._stopping(robot) if braking else (left, right)
+            tau_l, tau_r = limited(tau_l, tau_r, body)
+            start = complex(robot.hand_x, robot.hand_y)
+            ways.append(robot.move(forward * (tau_l + tau_r), turning * (tau_r - tau_l), h, substeps, body))
+            rows.append([start, complex(robot.hand_x, robot.hand_y)])
+        return Path(rows, ways, self._tick)
 
-    def _applied(self, torques: Array) -> Array:
-        """Torques (2, N) after brakes and saturation."""
+    def _stopping(self, robot: Unicycle) -> tuple[float, float]:
+        """Torques that stop each wheel within the tick, if they are not too large.
+
+        A wheel's rim obeys v' = b tau / J_wheel on its own, so each wheel is stopped on its own.
+        """
         body = self._body
+        sideways = 0.5 * body.axle * robot.omega
+        per_speed = -body.wheel_inertia / (body.wheel_radius * self._tick)
         most = body.max_torque
-        if self._braking is not None:
-            # A wheel's rim obeys v' = b tau / J_wheel on its own, so each wheel is stopped on its own: by the torque
-            # that stops it within the tick, or the largest that there is.
-            nu, omega = self._speeds
-            sideways = 0.5 * body.axle * omega
-            rims = np.array([nu - sideways, nu + sideways])
-            stop = rims * (-body.wheel_inertia / (body.wheel_radius * self._tick))
-            np.clip(stop, -most, most, out=stop)
-            torques = np.where(self._braking, stop, torques)
-        if body.saturation == "proportional":
-            largest = np.maximum.reduce(np.abs(torques), axis=0)
-            torques *= most / np.maximum(largest, most)
-            return torques
-        np.maximum(torques, -most, out=torques)
-        np.minimum(torques, most, out=torques)
-        return torques
+        left, right = per_speed * (robot.nu - sideways), per_speed * (robot.nu + sideways)
+        return max(-most, min(most, left)), max(-most, min(most, right))
+
+
+def limited(tau_l: float, tau_r: float, body: Body) -> tuple[float, float]:
+    """The torques that the motors give when asked for these, N m."""
+    most = body.max_torque
+    if body.saturation == "proportional":
+        largest = max(abs(tau_l), abs(tau_r))
+        scale = most / largest if largest > most else 1.0
+        return tau_l * scale, tau_r * scale
+    return max(-most, min(most, tau_l)), max(-most, min(most, tau_r))

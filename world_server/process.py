@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import gcd
 
 import msgspec
 
@@ -18,7 +19,7 @@ from protocol.errors import SwarmFailure
 from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
 from protocol.scenario import Scenario
 from protocol.scenario.place import place_of
-from protocol.shell import Stop
+from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from world_server.outcome import outcome
 from world_server.session import INTERRUPTED, WorldSession
@@ -150,10 +151,16 @@ class WorldProcess:
         """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
         world = session.world
         next_progress = 0.0
+        # The field is advanced while the robots think, in batches that end where somebody looks at it.
+        batch = world.ticks_per_sample
+        if telemetry is not None:
+            batch = gcd(batch, telemetry.field_ticks)
+        sender = {keys.robot(i, keys.DRIVE): i for i in range(self.scenario.robots)}
         session.start()
         if telemetry is not None:
             telemetry.tick()
-        world.prepare()
+        world.prepare(batch)
+        settle_memory()
         receive, counters = bus.receive, bus.counters
         while session.ended is None:
             event = receive(None)
@@ -161,7 +168,7 @@ class WorldProcess:
             if event.__class__ is Delivery:
                 message = event.message  # type: ignore[union-attr]
                 if message.__class__ is Drive:
-                    if keys.robot_of(event.key) == message.robot:  # type: ignore[union-attr]
+                    if sender[event.key] == message.robot:  # type: ignore[union-attr]
                         complete = session.take_drive(message)
                     else:
                         counters.refused += 1
@@ -174,8 +181,8 @@ class WorldProcess:
                 session.step()
                 if telemetry is not None:
                     telemetry.tick()
-                # The robots think about this tick; the plume does not depend on them.
-                world.prepare()
+                if world.tick % batch == 0:
+                    world.prepare(batch)
                 now = time.perf_counter()
                 if now >= next_progress:
                     next_progress = now + PROGRESS_PERIOD

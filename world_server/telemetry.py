@@ -20,7 +20,7 @@ class Telemetry:
     def __init__(self, world: World, truth: Callable[[Message], None], field: Callable[[Message], None]) -> None:
         recording, dt = world.scenario.recording, world.dt
         self._truth_ticks = max(1, round(recording.truth_period / dt))
-        self._field_ticks = max(1, round(recording.field_period / dt))
+        self.field_ticks = max(1, round(recording.field_period / dt))
         self._world = world
         self._truth = truth
         self._field = field
@@ -32,7 +32,7 @@ class Telemetry:
         if last or k % self._truth_ticks == 0:
             self._truth(truth_of(self._world, self._count))
             self._count += 1
-        if last or k % self._field_ticks == 0:
+        if last or k % self.field_ticks == 0:
             self._field(field_of(self._world))
 
 

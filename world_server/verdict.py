@@ -40,8 +40,8 @@ class Verdict:
         # How far the hands may still go before a look is worth its time: nobody can arrive, no pair beat the record.
         self._source_slack = 0.0
         self._pair_slack = 0.0
-        track = np.ascontiguousarray(hands).view(np.complex128)  # of one point each
-        self.judge(Path(track, np.zeros(len(hands)), 0.0), 0.0)
+        here = [[complex(x, y)] for x, y in hands.tolist()]  # ways of one point each
+        self.judge(Path(here, [0.0] * len(here), 0.0), 0.0)
 
     @property
     def min_pair_distance(self) -> float | None:
@@ -50,7 +50,7 @@ class Verdict:
 
     def judge(self, path: Path, t0: float) -> None:
         """Take in the tick that began at `t0`, s."""
-        longest = float(np.maximum.reduce(path.ways))
+        longest = max(path.ways)
         if self.found is None:
             self._source_slack -= longest
             if self._source_slack <= 0.0:
@@ -60,7 +60,7 @@ class Verdict:
             self._look_at_pairs(path.track, 2.0 * longest)
 
     def _look_at_source(self, path: Path, t0: float, longest: float) -> None:
-        last = float(np.minimum.reduce(np.abs(path.track[:, -1] - self._source)))
+        last = min(abs(row[-1] - self._source) for row in path.rows)
         if last <= self._radius + 2.0 * longest:
             self.found = first_arrival(path.track, self._source, self._radius, t0, path.h)
         self._source_slack = last - self._radius

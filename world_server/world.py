@@ -6,6 +6,7 @@ depend on the robots, so `prepare()` may advance it early, while the robots thin
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping
 from hashlib import blake2b
 
@@ -39,13 +40,13 @@ class World:
         self.first_detection: float | None = None
         self.first_detector = -1
         self.detections = 0
-        self.torques = np.zeros((2, scenario.robots))
-        self._dead = np.zeros(scenario.robots, dtype=bool)
+        self.torques: tuple[list[float], list[float]] = ([0.0] * scenario.robots, [0.0] * scenario.robots)
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
-        self._ticks_per_sample = max(1, round(scenario.sensors.period / scenario.timing.tick))
+        self.ticks_per_sample = max(1, round(scenario.sensors.period / scenario.timing.tick))
         self._digest = blake2b(digest_size=16)
-        self.concentration = np.zeros(scenario.robots)
-        self._sense(hands)
+        self.concentration = [0.0] * scenario.robots
+        self._wind: tuple[list[float], list[float]] = ([0.0] * scenario.robots, [0.0] * scenario.robots)
+        self._sense()
 
     @property
     def t(self) -> float:
@@ -77,12 +78,12 @@ class World:
     def lose(self, robot: int) -> None:
         """A robot died: its body brakes, it senses and drives no more."""
         self.live.discard(robot)
-        self._dead[robot] = True
+        self.bodies.brake([i not in self.live for i in range(self.scenario.robots)])
 
-    def prepare(self) -> None:
-        """Advance the field to the next tick, which is otherwise done when its sensors sample; the robots' drives cannot
-        change it."""
-        self.field.advance_to(self.next_t)
+    def prepare(self, ticks: int = 1) -> None:
+        """Advance the field by up to `ticks` ticks from now, which is otherwise done when its sensors sample; the robots'
+        drives cannot change it. Many steps in a row cost half as much as one now and then."""
+        self.field.advance_to((self.tick + ticks) * self.dt)
 
     def step(self, t0: float, t1: float, drives: Mapping[int, Drive]) -> list[Reading]:
         """Move everything from t0, which is now, to t1, the next tick; what the live robots sense there.
@@ -93,59 +94,50 @@ class World:
         """
         if abs(t0 - self.t) > 1e-9 or abs(t1 - self.next_t) > 1e-9:
             raise ValueError(f"the world is at {self.t} s and steps to {self.next_t} s, not from {t0} to {t1}")
-        torques = self.torques
-        torques.fill(0.0)
+        n = self.scenario.robots
+        left, right = self.torques = [0.0] * n, [0.0] * n
         for i, drive in drives.items():
-            torques[0, i] = drive.tau_left
-            torques[1, i] = drive.tau_right
-        if self._dead.any():
-            self.bodies.brake(self._dead)
-        path = self.bodies.step(torques[0], torques[1])
+            left[i], right[i] = drive.tau_left, drive.tau_right
+        path = self.bodies.step(left, right)
         self.verdict.judge(path, t0)
         self.tick += 1
-        self._sense(path.hands[:, -1])
+        self._sense()
         return self.readings()
 
     def readings(self) -> list[Reading]:
         """What the live robots sense now."""
-        s, k, t, b = self.scenario, self.tick, self.t, self.bodies
+        s, k, t = self.scenario, self.tick, self.t
+        live, hears, (wind_x, wind_y), ppt = self.live, self.radio.hears, self._wind, self.concentration
         history: tuple[tuple[float, float], ...] = ()
-        wind_x, wind_y = self._wind
-        rows = zip(
-            b.x.tolist(), b.y.tolist(), b.theta.tolist(), b.nu.tolist(), b.omega.tolist(),
-            wind_x.tolist(), wind_y.tolist(), self.concentration.tolist(),
-            strict=True,
-        )  # fmt: skip
         readings = []
-        live = self.live
-        for i, (x, y, theta, nu, omega, u, v, ppt) in enumerate(rows):
+        for i, b in enumerate(self.bodies.robots):
             if i in live:
-                hears = self.radio.hears(i, k, live)
                 if k == 0:
-                    history = tuple((float(a), float(c)) for a, c in self._wind_past[:, i])
-                exact = Reading(i, k, t, x, y, theta, nu, omega, u, v, ppt, hears, history)
+                    history = tuple((float(u), float(v)) for u, v in self._wind_past[:, i])
+                exact = Reading(
+                    i, k, t, b.x, b.y, b.theta, b.nu, b.omega, wind_x[i], wind_y[i], ppt[i], hears(i, k, live), history
+                )
                 readings.append(sensors.observe(exact, s.sensors, s.seed))
         return readings
 
-    def _sense(self, hands: np.ndarray) -> None:
-        if self.tick % self._ticks_per_sample == 0:
+    def _sense(self) -> None:
+        if self.tick % self.ticks_per_sample == 0:
             # Wind and gas sensors hold their value in between.
             self.field.advance_to(self.t)
-            xs, ys = hands[:, 0], hands[:, 1]
-            self._wind = self.field.wind.at(xs, ys)
-            self.concentration = self.field.plume.concentration(xs, ys)
+            xs, ys = self.bodies.hands().T
+            u, v = self.field.wind.at(xs, ys)
+            self._wind = (u.tolist(), v.tolist())
+            self.concentration = self.field.plume.concentration(xs, ys).tolist()
+            self._digest.update(array("d", [*u, *v, *self.concentration]).tobytes())
             self._digest.update(self.field.plume.snapshot().tobytes())
         if self.tick % self._ticks_per_decision == 0:
             self._note_detections()
-        b = self.bodies
-        self._digest.update(
-            b"".join(a.tobytes() for a in (b.x, b.y, b.theta, b.nu, b.omega, *self._wind, self.concentration))
-        )
+        state = [value for b in self.bodies.robots for value in (b.x, b.y, b.theta, b.nu, b.omega)]
+        self._digest.update(array("d", state).tobytes())
 
     def _note_detections(self) -> None:
-        above = self.concentration > self.scenario.decision.threshold
-        if above.any():
-            self.detections += int(above.sum())
-            if self.first_detection is None:
-                self.first_detection = self.t
-                self.first_detector = int(above.argmax())
+        above = [i for i, ppt in enumerate(self.concentration) if ppt > self.scenario.decision.threshold]
+        self.detections += len(above)
+        if above and self.first_detection is None:
+            self.first_detection = self.t
+            self.first_detector = above[0]

@@ -55,7 +55,6 @@ class Children:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
-                start_new_session=True,
             )
         child = self.members[name] = Child(name, process, log)
         return child

@@ -39,11 +39,11 @@ def keep_clear(u: Point, own: Own, others: Sequence[Placed], potential: Repulsio
     The law's u_i is first limited to `top`, what the wheels can give, m/s^2: laws that pull with metres per second
     squared for every metre of distance would drown any repulsion.
     """
-    if not anyone_within(own.x, own.y, others, potential.d):
+    fx, fy = gradient_force(own.x, own.y, others, potential, potential.d)
+    if fx == 0.0 and fy == 0.0:
         return u
     size = hypot(*u)
     scale = top / size if size > top else 1.0
-    fx, fy = gradient_force(own.x, own.y, others, potential, potential.d)
     return scale * u[0] + fx, scale * u[1] + fy
 
 

@@ -35,7 +35,8 @@ def neighbours_of(i: int, n: int) -> list[int]:
 def robot(i: int, n: int, endpoints: list[str], lockstep: bool) -> None:
     neighbours = neighbours_of(i, n)
     connect = [endpoints[0], *(endpoints[1 + j] for j in neighbours if j < i)]
-    bus = ZenohBus(RUN, keys.robot_name(i), token_of(RUN), listen=[endpoints[1 + i]], connect=connect, lease_ms=5000, lockstep=lockstep)
+    me, here = keys.robot_name(i), endpoints[1 + i]
+    bus = ZenohBus(RUN, me, token_of(RUN), listen=[here], connect=connect, lease_ms=5000, lockstep=lockstep)
     bus.subscribe(keys.robot(i, keys.READING), Reading)
     bus.subscribe(keys.HALT, Halt)
     for j in neighbours:
@@ -89,7 +90,7 @@ def main() -> None:
     parser.add_argument("--robots", type=int, default=5)
     parser.add_argument("--ticks", type=int, default=2000)
     parser.add_argument("--transport", choices=["unix", "tcp"], default="unix")
-    parser.add_argument("--queued", action="store_true", help="links with a queue and a thread that sends, as in real time")
+    parser.add_argument("--queued", action="store_true", help="links with a thread that sends")
     given = parser.parse_args()
     n = given.robots
     with tempfile.TemporaryDirectory(prefix="odour-") as folder:

@@ -22,7 +22,7 @@ angles = st.floats(-7.0, 7.0)
 def one_robot(theta: float, nu: float, omega: float, timing: Timing, body: Body = BODY) -> Bodies:
     """A robot at (3, -2) that is moving already."""
     bodies = Bodies(body, timing, [3.0], [-2.0], [theta])
-    bodies._speeds[:, 0] = nu, omega
+    bodies.robots[0].nu, bodies.robots[0].omega = nu, omega
     return bodies
 
 
@@ -46,7 +46,7 @@ def test_zero_torque_at_rest_stays_at_rest() -> None:
     assert bodies.y.tolist() == [2.0, -7.0]
     assert bodies.theta.tolist() == [0.3, 4.0]
     assert bodies.travelled.tolist() == [0.0, 0.0]
-    assert np.all(path.hands == before[:, None, :])
+    assert path.track[:, -1].tolist() == [complex(*hand) for hand in before]
     assert np.all(bodies.hand_velocities() == 0.0)
 
 
@@ -173,15 +173,15 @@ def test_shorter_substeps_change_the_way_by_little_even_when_limits_are_met() ->
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
 
 
-def test_the_path_has_as_many_substeps_as_asked_and_starts_where_the_last_one_ended() -> None:
+def test_the_path_starts_where_the_last_one_ended_and_ends_at_the_hands() -> None:
     bodies = Bodies(BODY, Timing(tick=0.05, substep=0.02), [0.0, 9.0], [0.0, 9.0], [0.0, 1.0])
     first = bodies.step([0.5, 0.1], [0.4, 0.2])
     second = bodies.step([0.5, 0.1], [0.4, 0.2])
-    assert first.hands.shape == (2, 3, 2)
-    assert first.h == pytest.approx(0.05 / 3)
+    assert first.track.shape == (2, 2)
+    assert first.h == 0.05
     assert second.track[:, 0].tolist() == first.track[:, -1].tolist()
-    assert second.hands[:, -1].tolist() == bodies.hands().tolist()
-    np.testing.assert_allclose(bodies.travelled, first.ways + second.ways)
+    assert second.track[:, -1].tolist() == [complex(*hand) for hand in bodies.hands()]
+    np.testing.assert_allclose(bodies.travelled, np.add(first.ways, second.ways))
 
 
 def test_relabelling_the_robots_relabels_the_answer() -> None:
@@ -222,7 +222,8 @@ def test_a_braking_robot_comes_to_rest_as_fast_as_its_wheels_can_without_rolling
 def test_brakes_hold_only_the_robots_of_the_mask_and_only_until_the_next_call() -> None:
     def fresh() -> Bodies:
         bodies = Bodies(BODY, Timing(), [0.0, 5.0], [0.0, 0.0], [0.0, 1.0])
-        bodies._speeds[0] = 0.5
+        for robot in bodies.robots:
+            robot.nu = 0.5
         return bodies
 
     braked, free = fresh(), fresh()

@@ -58,13 +58,14 @@ def test_each_sensor_has_noise_of_its_own_size_on_its_own_fields(table: Sensors,
 
 def test_one_sensors_noise_changes_no_others_draws() -> None:
     alone = sensors.observe(EXACT, Sensors(heading_noise=0.1), 5)
-    together = sensors.observe(EXACT, Sensors(0.2, 0.3, 0.1, 0.4), 5)
+    all_noisy = Sensors(wind_noise=0.2, position_noise=0.3, heading_noise=0.1, concentration_noise=0.4)
+    together = sensors.observe(EXACT, all_noisy, 5)
     assert alone.theta == together.theta
     assert together.x != EXACT.x
 
 
 def test_no_two_sensors_share_a_draw() -> None:
-    seen = sensors.observe(EXACT, Sensors(1.0, 1.0, 1.0, 1.0), 5)
+    seen = sensors.observe(EXACT, Sensors(wind_noise=1.0, position_noise=1.0, heading_noise=1.0, concentration_noise=1.0), 5)
     errors = [getattr(seen, name) - getattr(EXACT, name) for name in ("x", "y", "theta", "wind_x", "wind_y")]
     errors.append(seen.concentration / EXACT.concentration - 1.0)
     assert len({round(error, 9) for error in errors}) == 6

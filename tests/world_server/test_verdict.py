@@ -21,7 +21,7 @@ SOURCE = Source(x=10.0, y=0.0, radius=1.0)
 def path_of(*robots: list[complex], h: float = 0.01) -> Path:
     """A tick in which the hands go through the given points."""
     track = np.array(robots, dtype=np.complex128)
-    return Path(track, np.abs(np.diff(track, axis=1)).sum(axis=1), h)
+    return Path(track.tolist(), np.abs(np.diff(track, axis=1)).sum(axis=1).tolist(), h)
 
 
 def start_of(path: Path) -> Array:
