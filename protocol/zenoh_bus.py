@@ -202,8 +202,11 @@ class ZenohBus:
     def _announce(self) -> None:
         if not self._announced and not self._closed:
             self._announced = True
-            token = self._session.liveliness().declare_token(self._prefix + _ALIVE + self.name)
-            self._declared.append(token)
+            try:
+                token = self._session.liveliness().declare_token(self._prefix + _ALIVE + self.name)
+                self._declared.append(token)
+            except zenoh.ZError as error:  # closed by another thread in between
+                self._complain(_ALIVE, f"cannot be announced: {error}")
 
     def _watch_liveliness(self) -> None:
         note, cut, me = self._roll.note, len(self._prefix + _ALIVE), self.name

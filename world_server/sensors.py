@@ -13,10 +13,16 @@ from protocol.randomness import rng_for
 from protocol.scenario.sections import Sensors
 
 
+def noisy(sensors: Sensors) -> bool:
+    """Whether any sensor has noise."""
+    s = sensors
+    return bool(s.wind_noise or s.position_noise or s.heading_noise or s.concentration_noise)
+
+
 def observe(exact: Reading, sensors: Sensors, seed: int) -> Reading:
     """`exact` as the robot's sensors report it; the speeds come from the wheels and are exact."""
     s, i, k = sensors, exact.robot, exact.tick
-    if not (s.wind_noise or s.position_noise or s.heading_noise or s.concentration_noise):
+    if not noisy(s):
         return exact
     wind_x, wind_y = noisy_pair(exact.wind_x, exact.wind_y, s.wind_noise, seed, i, k, "wind")
     x, y = noisy_pair(exact.x, exact.y, s.position_noise, seed, i, k, "position")

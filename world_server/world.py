@@ -43,7 +43,9 @@ class World:
         self.torques: tuple[list[float], list[float]] = ([0.0] * scenario.robots, [0.0] * scenario.robots)
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self.ticks_per_sample = max(1, round(scenario.sensors.period / scenario.timing.tick))
+        self._noisy = sensors.noisy(scenario.sensors)
         self._digest = blake2b(digest_size=16)
+        self._history: list[float] = []  # not hashed yet
         self.concentration = [0.0] * scenario.robots
         self._wind: tuple[list[float], list[float]] = ([0.0] * scenario.robots, [0.0] * scenario.robots)
         self._sense()
@@ -67,6 +69,7 @@ class World:
     def digest(self) -> str:
         """32 hex digits that name the truth history up to now: robots and what they sense at every tick, the plume
         whenever it is sampled."""
+        self._hash()
         return self._digest.hexdigest()
 
     @property
@@ -117,7 +120,7 @@ class World:
                 exact = Reading(
                     i, k, t, b.x, b.y, b.theta, b.nu, b.omega, wind_x[i], wind_y[i], ppt[i], hears(i, k, live), history
                 )
-                readings.append(sensors.observe(exact, s.sensors, s.seed))
+                readings.append(sensors.observe(exact, s.sensors, s.seed) if self._noisy else exact)
         return readings
 
     def _sense(self) -> None:
@@ -128,12 +131,17 @@ class World:
             u, v = self.field.wind.at(xs, ys)
             self._wind = (u.tolist(), v.tolist())
             self.concentration = self.field.plume.concentration(xs, ys).tolist()
-            self._digest.update(array("d", [*u, *v, *self.concentration]).tobytes())
+            self._history += [*u, *v, *self.concentration]
+            self._hash()
             self._digest.update(self.field.plume.snapshot().tobytes())
         if self.tick % self._ticks_per_decision == 0:
             self._note_detections()
-        state = [value for b in self.bodies.robots for value in (b.x, b.y, b.theta, b.nu, b.omega)]
-        self._digest.update(array("d", state).tobytes())
+        for b in self.bodies.robots:
+            self._history += (b.x, b.y, b.theta, b.nu, b.omega)
+
+    def _hash(self) -> None:
+        self._digest.update(array("d", self._history).tobytes())
+        self._history.clear()
 
     def _note_detections(self) -> None:
         above = [i for i, ppt in enumerate(self.concentration) if ppt > self.scenario.decision.threshold]

@@ -205,8 +205,8 @@ class Control(Table, frozen=True):
 
     step: Literal["implicit", "explicit"] = "implicit"  # sampled-data form of sig(.)^a, see robot_agent.sig
     relay: bool = True  # neighbours pass on whom they have heard, so that all keep clear of all
-    relay_period: Positive = 0.1  # s
-    relay_age: Positive = 1.0  # older states are not passed on, s
+    relay_period: Positive = 0.2  # s
+    relay_age: Positive = 2.0  # older states are not passed on, s
 
 
 class Network(Table, frozen=True):

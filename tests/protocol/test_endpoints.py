@@ -74,7 +74,7 @@ def test_an_id_that_we_did_not_make_is_a_strangers(identity: str) -> None:
     assert member_of("run", 1, identity) == STRANGER + identity
 
 
-@pytest.mark.parametrize("name", ["", "robot/1234567", "räuber", "a\0b", "robot/*", "Robot/1", "a/b", "stranger/00"])
+@pytest.mark.parametrize("name", ["", "robot/1234567", "räuber", "a\0b", "robot/*", "Robot/1", "a/b"])
 def test_a_name_that_does_not_fit_is_refused(name: str) -> None:
     with pytest.raises(ScenarioError, match="member"):
         check_names("run", name)
