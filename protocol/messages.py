@@ -13,7 +13,7 @@ from msgspec import Meta, Struct
 
 # The bounds are checked by the decoder; they also keep out what is not finite. Nothing we say in SI units comes near.
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
-MAX_RECORDS = 4096  # entries of one tuple
+RECORDS = Meta(max_length=4096)  # entries of one tuple
 RelayedState = tuple[int, int, Number, Number, Number, Number]  # robot, tick, x, y, vx, vy
 
 NEVER = -1.0  # a time that has not come yet
@@ -37,8 +37,8 @@ class Reading(Message, frozen=True, array_like=True, gc=False):
     wind_x: Number  # local wind, m/s
     wind_y: Number
     concentration: Number  # ppt
-    hears: Annotated[tuple[tuple[int, int], ...], Meta(max_length=MAX_RECORDS)] = ()  # lock-step: the (neighbour, tick) states to wait for
-    wind_past: Annotated[tuple[tuple[Number, Number], ...], Meta(max_length=MAX_RECORDS)] = ()  # tick 0 only: wind recorded before the start, oldest first
+    hears: Annotated[tuple[tuple[int, int], ...], RECORDS] = ()  # lock-step: the (neighbour, tick) states to wait for
+    wind_past: Annotated[tuple[tuple[Number, Number], ...], RECORDS] = ()  # tick 0: wind before the start, oldest first
 
 
 class Shared(Message, frozen=True, array_like=True, gc=False):
@@ -63,8 +63,8 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     search_y: Number
     h_x: Number  # my decision h^ic (3.31), m
     h_y: Number
-    relayed: Annotated[tuple[RelayedState, ...], Meta(max_length=MAX_RECORDS)] = ()  # states of others, passed on
-    virtual: Annotated[tuple[Number, ...], Meta(max_length=MAX_RECORDS)] = ()  # an algorithm's own numbers (virtual position and velocity, charge, ...)
+    relayed: Annotated[tuple[RelayedState, ...], RECORDS] = ()  # states of others, passed on
+    virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # an algorithm's own numbers, e.g. a virtual position
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):

@@ -14,10 +14,10 @@ import msgspec
 
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
-from protocol.scenario.place import RobotPlace
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
 from protocol.scenario import RobotScenario
+from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
@@ -127,17 +127,16 @@ class RobotProcess:
         settle_memory()
         while True:
             event = bus.receive(FAREWELL if halted else None)
-            if event.__class__ is Delivery:
-                message = event.message  # type: ignore[union-attr]
-                kind = message.__class__
-                if kind is Shared:
-                    if sender[event.key] == message.robot:  # type: ignore[union-attr]
+            if isinstance(event, Delivery):
+                message = event.message
+                if isinstance(message, Shared):
+                    if sender[event.key] == message.robot:
                         session.take_shared(message)
                     else:
                         bus.counters.refused += 1
-                elif kind is Reading:
+                elif isinstance(message, Reading):
                     session.take_reading(message)
-                elif kind is Halt and not halted:
+                elif isinstance(message, Halt) and not halted:
                     halted = True
                     self.say(f"the run is over: {message.reason}")
                     last_word(report(session, bus.counters))

@@ -10,6 +10,7 @@ in a process whose caches other processes use in between.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, cos, hypot, sin
 
 import numpy as np
@@ -89,7 +90,7 @@ class Bodies:
     def __init__(self, body: Body, timing: Timing, x: ArrayLike, y: ArrayLike, theta: ArrayLike) -> None:
         """Robots at rest with the centre of the axle at (x, y), m, heading theta, rad."""
         places = np.array([x, y, theta], dtype=np.float64).T.tolist()
-        self.robots = [Unicycle(*place, body.hand) for place in places]
+        self.robots = [Unicycle(x_i, y_i, theta_i, body.hand) for x_i, y_i, theta_i in places]
         self._body = body
         self._braking: list[bool] = [False] * len(self.robots)
         self._substeps = max(1, ceil(timing.tick / timing.substep - 1e-9))
@@ -144,7 +145,7 @@ class Bodies:
         the others do as they are told. Until the next call."""
         self._braking = [bool(held) for held in np.asarray(mask)]
 
-    def step(self, tau_left: ArrayLike, tau_right: ArrayLike) -> Path:
+    def step(self, tau_left: Sequence[float], tau_right: Sequence[float]) -> Path:
         """Move through one tick.
 
         Thesis (1.6) with F and tau from (1.11), (1.12) inverted; m and J cancel:
@@ -160,7 +161,7 @@ class Bodies:
         forward = body.wheel_radius / (2.0 * body.wheel_inertia)
         turning = body.wheel_radius / (body.axle * body.wheel_inertia)
         rows, ways = [], []
-        for robot, braking, left, right in zip(self.robots, self._braking, tau_left, tau_right, strict=True):  # type: ignore[arg-type]
+        for robot, braking, left, right in zip(self.robots, self._braking, tau_left, tau_right, strict=True):
             tau_l, tau_r = self._stopping(robot) if braking else (left, right)
             tau_l, tau_r = limited(tau_l, tau_r, body)
             start = complex(robot.hand_x, robot.hand_y)

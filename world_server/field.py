@@ -57,7 +57,7 @@ class Field:
             if self._step >= self._release_at:
                 self.plume.advance(self.wind)
             self._step += 1
-    
+
 
 def _steps(seconds: float, dt: float) -> int:
     return math.ceil(seconds / dt - 1e-9)

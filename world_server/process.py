@@ -165,10 +165,10 @@ class WorldProcess:
         while session.ended is None:
             event = receive(None)
             complete = False
-            if event.__class__ is Delivery:
-                message = event.message  # type: ignore[union-attr]
-                if message.__class__ is Drive:
-                    if sender[event.key] == message.robot:  # type: ignore[union-attr]
+            if isinstance(event, Delivery):
+                message = event.message
+                if isinstance(message, Drive):
+                    if sender[event.key] == message.robot:
                         complete = session.take_drive(message)
                     else:
                         counters.refused += 1

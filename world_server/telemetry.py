@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from protocol.messages import Field, Message, Truth
 from world_server.world import World
@@ -53,7 +54,7 @@ def field_of(world: World) -> Field:
     return Field(world.tick, world.t, filaments.tobytes(), wind.tobytes())
 
 
-def _columns(world: World) -> Iterator[object]:
+def _columns(world: World) -> Iterator[ArrayLike]:
     b = world.bodies
     yield from (b.x, b.y, b.theta, b.nu, b.omega)
     yield from world.torques

@@ -16,8 +16,8 @@ def save_png(graph: Graph, title: str, file: Path) -> None:
 
     Raises: OSError when the file cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - half a second to load
-    from matplotlib.figure import Figure  # noqa: PLC0415
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6, 6), layout="constrained")
     FigureCanvasAgg(figure)

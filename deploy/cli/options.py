@@ -27,9 +27,7 @@ def read_scenario(
     for name in ("preset", "case"):
         if (value := flags.pop(name, None)) is not None:
             overrides.append((name, value, f"--{name}"))
-    for text in settings:
-        path, value = parse_setting(text)
-        overrides.append((path, value, f"--set {path}"))
+    overrides += [(path, value, f"--set {path}") for path, value in map(parse_setting, settings)]
     if source is not None:
         x, y = _point(source)
         overrides += [("source.x", x, "--source"), ("source.y", y, "--source")]
@@ -39,8 +37,8 @@ def read_scenario(
     return load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
 
 
-def complain(error: Exception) -> None:
-    """Print the sentence of an error that is meant for the person at the terminal."""
+def complain(error: Exception | str) -> None:
+    """Print a sentence that is meant for the person at the terminal."""
     print(error, file=sys.stderr)
 
 
@@ -49,5 +47,6 @@ def _point(text: str) -> tuple[float, float]:
     try:
         x, y = (float(part) for part in parts)
     except ValueError:
-        raise ScenarioError(f'--source is "{text}"; it must be two numbers X,Y in metres, for example 30,-20.') from None
+        sentence = f'--source is "{text}"; it must be two numbers X,Y in metres, for example 30,-20.'
+        raise ScenarioError(sentence) from None
     return x, y

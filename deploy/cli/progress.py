@@ -32,7 +32,9 @@ class Display:
             self._live.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if self._live is not None:
             self._live.stop()
 
@@ -51,5 +53,6 @@ class Display:
             return Text("the swarm links up ...", style="dim")
         return Text.assemble(
             (f"{p.t:8.1f} s  ", "bold"),
-            f"{p.live}/{self._scenario.robots} robots, {p.detections} detections, closest {p.closest:.1f} m from the source",
+            f"{p.live}/{self._scenario.robots} robots, {p.detections} detections, ",
+            f"the nearest {p.closest:.1f} m from the source",
         )

@@ -9,6 +9,7 @@ from types import FrameType
 from typing import Annotated, NoReturn
 
 import typer
+from typer import Argument, Option
 
 from deploy.cli.options import complain, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
@@ -20,22 +21,22 @@ INTERRUPTED = 130
 
 
 def run(
-    file: Annotated[Path | None, typer.Argument(metavar="[SCENARIO.toml]", help="A scenario file; none: the default.")] = None,
-    robots: Annotated[int | None, typer.Option("--robots", "-n", help="Number of robots.")] = None,
-    algorithm: Annotated[str | None, typer.Option("--algorithm", "-a", help="simple, cfpso, dcs.")] = None,
-    topology: Annotated[str | None, typer.Option("--topology", "-t", help="A named graph, or a graph file.")] = None,
-    case: Annotated[int | None, typer.Option("--case", help="Source and wind of Table 4.6, 1 to 9.")] = None,
-    source: Annotated[str | None, typer.Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,
-    wind: Annotated[float | None, typer.Option("--wind", metavar="U", help="Mean wind speed, m/s.")] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="All randomness follows from it.")] = None,
-    max_time: Annotated[float | None, typer.Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
-    preset: Annotated[str | None, typer.Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
-    setting: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
-    clock: Annotated[str, typer.Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
-    bus: Annotated[str, typer.Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
-    record: Annotated[Path | None, typer.Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
-    view: Annotated[bool, typer.Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
-    json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")] = False,
+    file: Annotated[Path | None, Argument(metavar="[SCENARIO.toml]", help="A scenario file; none: the default.")] = None,
+    robots: Annotated[int | None, Option("--robots", "-n", help="Number of robots.")] = None,
+    algorithm: Annotated[str | None, Option("--algorithm", "-a", help="simple, cfpso, dcs.")] = None,
+    topology: Annotated[str | None, Option("--topology", "-t", help="A named graph, or a graph file.")] = None,
+    case: Annotated[int | None, Option("--case", help="Source and wind of Table 4.6, 1 to 9.")] = None,
+    source: Annotated[str | None, Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,
+    wind: Annotated[float | None, Option("--wind", metavar="U", help="Mean wind speed, m/s.")] = None,
+    seed: Annotated[int | None, Option("--seed", help="All randomness follows from it.")] = None,
+    max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
+    preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
+    setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
+    clock: Annotated[str, Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
+    bus: Annotated[str, Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
+    record: Annotated[Path | None, Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
+    view: Annotated[bool, Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
+    json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else.")] = False,
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
     try:
@@ -57,7 +58,7 @@ def run(
         complain(error)
         raise typer.Exit(EXIT_FAILED) from None
     except KeyboardInterrupt:
-        complain(KeyboardInterrupt("interrupted; all processes have ended" + _left_behind(record)))
+        complain("interrupted; all processes have ended" + _left_behind(record))
         raise typer.Exit(INTERRUPTED) from None
     _print(outcome, scenario, record, json=json)
     raise typer.Exit(EXIT_FAILED if outcome.failed else 0)

@@ -34,7 +34,8 @@ def print_verdict(outcome: Outcome, scenario: Scenario, record: Path | None) -> 
 def _headline(outcome: Outcome, scenario: Scenario) -> Text:
     if outcome.found:
         where = f"({scenario.source.x:g}, {scenario.source.y:g})"
-        return Text(f"Found: robot {outcome.finder} reached the source at {where} after {outcome.time:.1f} s.", "bold green")
+        text = f"Found: robot {outcome.finder} reached the source at {where} after {outcome.time:.1f} s."
+        return Text(text, "bold green")
     if outcome.failed:
         return Text(f"Failed after {outcome.time:.1f} s: {outcome.ended}.", "bold red")
     if outcome.first_detection is None:

@@ -1,8 +1,9 @@
 """The processes of a run: started together, never left behind.
 
 Rules: every child is on a leash (its standard input is a pipe that ends with the launcher, however the launcher ends) and
-in a process group of its own, so that a Ctrl-C at the terminal reaches the launcher only. What a child writes to its
-standard error is kept for the sentence that says why it failed.
+leaves a Ctrl-C at the terminal to the launcher. (A session of its own for each would be tidier, but the kernel shares
+the processor out by sessions, and the swarm would run slower.) What a child writes to its standard error is kept for the
+sentence that says why it failed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A run over Zenoh on this machine: world, robots and recorder as processes, watched to their end.
 
-Rules: the launcher decides nothing of the run; it starts the processes, passes on what the world says, and leaves nothing
-behind: no process, no socket, no file, whichever way it ends.
+Rules: the launcher decides nothing of the run; it starts the processes, passes on what the world says, and leaves
+nothing behind: no process, no socket, no file, whichever way it ends.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The recorder as a process: linked to the world and to every robot, in nobody's way.
 
-Rules: it joins the bus first and loads Rerun afterwards; whatever it does takes the lowest priority, and what it is sent
-is best effort, so that the swarm's speed does not depend on it. It writes twice a second, so that a kill leaves what was
-written.
+Rules: it joins the bus first and loads Rerun afterwards; whatever it does takes the lowest priority, and what it is
+sent is best effort, so that the swarm's speed does not depend on it. It writes twice a second, so that a kill leaves
+what was written.
 """
 
 from __future__ import annotations

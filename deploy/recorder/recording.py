@@ -56,10 +56,10 @@ class Recording:
         if path is None and not view:
             raise OdourswarmError("a recording needs a file (--record FILE.rrd), a viewer (--view), or both.")
         os.environ.setdefault("RUST_LOG", _QUIET)
-        from deploy.recorder.blueprint import blueprint  # noqa: PLC0415 - loads rerun
-        from deploy.recorder.conversion import Batch, Conversion  # noqa: PLC0415
-        from deploy.recorder.output import RecordingFile  # noqa: PLC0415
-        from deploy.recorder.viewer import LiveViewer  # noqa: PLC0415
+        from deploy.recorder.blueprint import blueprint
+        from deploy.recorder.conversion import Batch, Conversion
+        from deploy.recorder.output import RecordingFile
+        from deploy.recorder.viewer import LiveViewer
 
         name = f"{run}: {scenario.algorithm}, {scenario.robots} robots, {scenario.topology}, seed {scenario.seed}"
         self._file: RecordingFile | None = None

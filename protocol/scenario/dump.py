@@ -44,7 +44,7 @@ def _top_first() -> list[str]:
 
 
 def _graph_is_needed(scenario: Scenario) -> bool:
-    from protocol.topology.named import TOPOLOGIES, build  # noqa: PLC0415 - networkx loads slowly
+    from protocol.topology.named import TOPOLOGIES, build
 
     if scenario.topology not in TOPOLOGIES:
         return True

@@ -58,7 +58,7 @@ def laplacian(graph: Graph) -> NDArray[np.float64]:
 
     Returns: L, (N, N); its rows add up to 0.
     """
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
     a = np.array(graph.adjacency(), dtype=np.float64).reshape(graph.robots, graph.robots)
     result: NDArray[np.float64] = np.diag(a.sum(axis=1)) - a
@@ -67,8 +67,8 @@ def laplacian(graph: Graph) -> NDArray[np.float64]:
 
 def analyse(graph: Graph) -> Analysis:
     """Eigenvalues, connectivity and spanning tree of `graph`."""
-    import networkx as nx  # noqa: PLC0415
-    import numpy as np  # noqa: PLC0415
+    import networkx as nx
+    import numpy as np
 
     ell = laplacian(graph)
     undirected = graph.is_symmetric()

@@ -108,7 +108,7 @@ def _from_csv(file: Path) -> Graph:
 
 
 def _from_edgelist(file: Path) -> Graph:
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     lines = [line.split("#")[0].split() for line in read_text(file, KIND).splitlines()]
     for number, fields in enumerate(lines, 1):
@@ -119,14 +119,14 @@ def _from_edgelist(file: Path) -> Graph:
 
 
 def _from_graphml(file: Path) -> Graph:
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     text = read_text(file, KIND)
     return _from_networkx(lambda: nx.parse_graphml(text))
 
 
 def _from_gml(file: Path) -> Graph:
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     text = read_text(file, KIND)
     return _from_networkx(lambda: nx.parse_gml(text, label="id"))

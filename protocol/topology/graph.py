@@ -49,7 +49,7 @@ class Graph:
 
     def to_networkx(self) -> networkx.DiGraph[int]:
         """The same graph for networkx: i -> j where i listens to j, attribute "weight" = a_ij."""
-        import networkx as nx  # noqa: PLC0415 - a tenth of a second that only those pay who need it
+        import networkx as nx
 
         graph: networkx.DiGraph[int] = nx.DiGraph()
         graph.add_nodes_from(range(self.robots))

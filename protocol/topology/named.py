@@ -16,7 +16,7 @@ Pairs = Iterable[tuple[int, int]]  # undirected edges, each once
 
 def everyone(n: int) -> Pairs:
     """Everyone with everyone."""
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     pairs: Pairs = nx.complete_graph(n).edges()
     return pairs
@@ -24,7 +24,7 @@ def everyone(n: int) -> Pairs:
 
 def ring(n: int) -> Pairs:
     """0 - 1 - ... - N-1 - 0; two robots make a line, one makes nothing."""
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     pairs: Pairs = nx.cycle_graph(n).edges() if n > 2 else line(n)
     return pairs
@@ -32,7 +32,7 @@ def ring(n: int) -> Pairs:
 
 def line(n: int) -> Pairs:
     """0 - 1 - ... - N-1."""
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     pairs: Pairs = nx.path_graph(n).edges()
     return pairs
@@ -40,7 +40,7 @@ def line(n: int) -> Pairs:
 
 def star(n: int) -> Pairs:
     """Robot 0 with everyone else."""
-    import networkx as nx  # noqa: PLC0415
+    import networkx as nx
 
     pairs: Pairs = nx.star_graph(n - 1).edges()
     return pairs

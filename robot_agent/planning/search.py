@@ -3,8 +3,8 @@
 The group sweeps along one common heading towards `search.target`. Thesis section 3.4.3: "along the direction of y axis
 from the initial positions (right-up corner) to the (80 m, 50 m)". The heading is agreed, not given: every robot
 proposes the one from its own place, and the proposal of the robot with the lowest number travels over the graph. When
-some robot has come to the end of a leg it proposes the next one (a lawn-mower sweep upwind; the thesis does not say what
-follows).
+some robot has come to the end of a leg it proposes the next one (a lawn-mower sweep upwind; the thesis does not say
+what follows).
 """
 
 from __future__ import annotations

@@ -52,7 +52,8 @@ def main() -> None:
             equal += over_zenoh.digest == in_memory.digest
             detected += in_memory.first_detection is not None
         unequal += given.seeds - equal
-        print(f"{algorithm:8} {name:9} {count} robots: {equal}/{given.seeds} equal, {detected} with a detection", flush=True)
+        row = f"{algorithm:8} {name:9} {count} robots: {equal}/{given.seeds} equal, {detected} with a detection"
+        print(row, flush=True)
     sys.exit(unequal > 0)
 
 

@@ -1,11 +1,12 @@
 """Whole runs in memory: the same to the bit, whatever carries the messages and however often."""
 
 import pytest
+from swarm_helpers import near_the_plume
+
 from deploy.memory_run import MemorySwarm, run_in_memory
 from protocol.messages import Shared
 from protocol.topology.named import TOPOLOGIES
 from robot_agent.algorithms import ALGORITHMS
-from swarm_helpers import near_the_plume
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)

@@ -1,14 +1,15 @@
 """Stories told tick by tick in memory: loss, late messages, death, strangers."""
 
 import msgspec
-from deploy.memory_run import MemorySwarm, run_in_memory
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from swarm_helpers import near_the_plume
+
+from deploy.memory_run import MemorySwarm, run_in_memory
 from protocol import keys
 from protocol.codec import Codec
 from protocol.messages import Drive, Reading, Report, Shared
 from protocol.randomness import rng_for
-from swarm_helpers import near_the_plume
 
 
 class LossyRadio:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from protocol.endpoints import default_transport, free_tcp_endpoints, make_endpoints, tcp_endpoints, unix_endpoint
 from protocol.errors import ScenarioError
 from protocol.scenario import Scenario

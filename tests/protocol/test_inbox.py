@@ -5,6 +5,7 @@ import sys
 import threading
 
 import pytest
+
 from protocol import inbox as module
 from protocol.bus import Counters, Lost
 from protocol.inbox import BIG_FRAME, Inbox

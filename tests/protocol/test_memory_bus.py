@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from protocol.bus import Asked, Delivery, Lost, Seen
 from protocol.codec import Codec
 from protocol.memory_bus import MemoryBus, MemoryNetwork

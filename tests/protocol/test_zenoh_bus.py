@@ -16,6 +16,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
+
 from protocol import inbox
 from protocol.bus import Asked, BusEvent, Delivery, Lost, Seen
 from protocol.codec import Codec
@@ -413,6 +414,29 @@ def test_members_can_start_in_any_order(wires: Wires) -> None:
     until(lambda: first.matched("robot/1/drive", ["robot/2"]), "linked")
     say(drive(3))
     assert drives(await_event(last, lambda e: isinstance(e, Delivery))) == [("robot/1/drive", 3)]
+
+
+def test_the_threads_of_the_wires_keep_their_state_from_message_to_message(wires: Wires) -> None:
+    """A thread without state of its own would begin to count anew with every message."""
+    mine = threading.local()
+    counts: list[int] = []
+
+    class Counting:
+        def offer(self, entry: object, frame: bytes) -> bool:
+            mine.count = getattr(mine, "count", 0) + 1
+            counts.append(mine.count)
+            return True
+
+    a, b = wires.member("robot/1"), wires.member("robot/2", "robot/1")
+    link_up(a, b)
+    a._inbox = Counting()
+    a.subscribe("robot/2/drive", Drive)
+    say = b.publisher("robot/2/drive", reliable=True)
+    until(lambda: b.matched("robot/2/drive", ["robot/1"]), "a hears b")
+    for tick in range(50):
+        say(drive(tick))
+    until(lambda: len(counts) == 50, "all are there")
+    assert max(counts) > 10
 
 
 # ---- processes ----
