@@ -13,7 +13,8 @@ from msgspec import Meta, Struct
 
 # The bounds are checked by the decoder; they also keep out what is not finite. Nothing we say in SI units comes near.
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
-RECORDS = Meta(max_length=4096)  # entries of one tuple
+MAX_RECORDS = 4096  # entries of one tuple
+RECORDS = Meta(max_length=MAX_RECORDS)
 RelayedState = tuple[int, int, Number, Number, Number, Number]  # robot, tick, x, y, vx, vy
 
 NEVER = -1.0  # a time that has not come yet

@@ -2,8 +2,8 @@
 
 Rules: nothing depends on this but speed. A thread that was not started by Python gets an interpreter state for every
 single call into Python and loses it afterwards; since Python 3.11 that includes mapping and unmapping the memory for
-its frames, some 25 microseconds, ten times what our callbacks do. A thread that once takes the interpreter lock and does
-not give that one back keeps its state until the process ends, and with it whatever is local to it.
+its frames, some 25 microseconds, ten times what our callbacks do. A thread that once takes the interpreter lock and
+does not give that one back keeps its state until the process ends, and with it whatever is local to it.
 """
 
 from __future__ import annotations

@@ -321,5 +321,3 @@ def _start_log() -> None:
     level = os.environ.get("ODOURSWARM_LOG")
     if level:
         zenoh.init_log_from_env_or(level)
-    elif os.environ.get("RUST_LOG"):
-        zenoh.try_init_log_from_env()  # type: ignore[no-untyped-call]

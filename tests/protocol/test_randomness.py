@@ -10,7 +10,8 @@ from scipy import stats
 
 from protocol.randomness import key_for, rng_for
 
-ADDRESSES = st.lists(st.one_of(st.integers(-(10**6), 10**6), st.sampled_from(["link", "wind", "1", "", "a"])), max_size=4)
+WORDS = st.sampled_from(["link", "wind", "1", "", "a"])
+ADDRESSES = st.lists(st.one_of(st.integers(-(10**6), 10**6), WORDS), max_size=4)
 DRAWS = 20_000
 # Kolmogorov's statistic times sqrt(n) is above this in one of a million runs; the draws are fixed, so it is no lottery.
 KOLMOGOROV = 2.7

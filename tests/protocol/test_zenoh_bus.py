@@ -155,7 +155,7 @@ def test_liveliness_and_links_reach_direct_neighbours_only(wires: Wires, lockste
     assert Seen("robot/1") in await_event(b, Lost("robot/3"))
     b.close()
     assert await_event(a, Lost("robot/2")) == [Seen("robot/2"), Lost("robot/2")]
-    assert a.links() == b.links() == c.links() == frozenset()
+    until(lambda: not (a.links() or b.links() or c.links()), "nobody is linked")
 
 
 def test_whoever_is_matched_hears_the_first_message(wires: Wires) -> None:
@@ -426,6 +426,9 @@ def test_the_threads_of_the_wires_keep_their_state_from_message_to_message(wires
             mine.count = getattr(mine, "count", 0) + 1
             counts.append(mine.count)
             return True
+
+        def push(self, entry: object) -> None:
+            """Nobody takes anything out."""
 
     a, b = wires.member("robot/1"), wires.member("robot/2", "robot/1")
     link_up(a, b)
