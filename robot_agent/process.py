@@ -16,7 +16,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
-from protocol.scenario import RobotScenario
+from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -72,7 +72,8 @@ class RobotProcess:
             token_of(self.run),
             listen=(self.place.robots[view.robot],),
             connect=connect,
-            lease_ms=view.network.lease_ms,
+            lease_ms=lease_ms(view.network, view.robots),
+            lockstep=True,
         )
         try:
             session, last_word = self._prepare(bus, view)

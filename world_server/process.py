@@ -17,7 +17,7 @@ from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
-from protocol.scenario import Scenario
+from protocol.scenario import Scenario, lease_ms
 from protocol.scenario.place import place_of
 from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -56,7 +56,8 @@ class WorldProcess:
             token_of(self.run),
             listen=(self.endpoints[0],),
             connect=(),
-            lease_ms=self.scenario.network.lease_ms,
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
+            lockstep=True,
         )
         try:
             return self._serve(bus)
@@ -100,6 +101,7 @@ class WorldProcess:
         """Wait until every robot has joined and every publication has its subscriber."""
         scenario = self.scenario
         waiting = set(range(scenario.robots))
+        gone: set[str] = set()
         members = {name for name, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted}
         deadline = time.monotonic() + scenario.network.join_timeout
         while True:
@@ -108,12 +110,14 @@ class WorldProcess:
                 self._answer(event, waiting)
             elif isinstance(event, Seen):
                 members.discard(event.name)
-            elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None and lost not in waiting:
-                raise SwarmFailure(f"robot {lost} died before the run began.")
-            elif event is None and not waiting and not members and self._all_matched(bus):
+                gone.discard(event.name)
+            elif isinstance(event, Lost):
+                # It may only have been held up while everybody starts, and come back.
+                gone.add(event.name)
+            elif event is None and not waiting and not members and not gone and self._all_matched(bus):
                 return
             if time.monotonic() > deadline:
-                missing = [f"robot {i}" for i in sorted(waiting)] + sorted(members)
+                missing = [keys.robot_name(i) for i in sorted(waiting)] + sorted(members | gone)
                 raise SwarmFailure(
                     f"after {scenario.network.join_timeout:g} s the swarm is not complete: "
                     f"missing {', '.join(missing) or 'a subscriber of some reading'}."

@@ -18,7 +18,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.errors import SwarmFailure
 from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
-from protocol.scenario import Scenario
+from protocol.scenario import Scenario, lease_ms
 from protocol.shell import Stop, ignore_signals
 from protocol.zenoh_bus import ZenohBus, token_of
 
@@ -48,7 +48,7 @@ class RecorderProcess:
             token_of(self.run),
             listen=(),
             connect=self.endpoints,
-            lease_ms=self.scenario.network.lease_ms,
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
         )
         try:
             for key, kind in (

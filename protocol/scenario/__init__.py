@@ -1,5 +1,13 @@
 """Scenario files: their tables, how they are read and checked, presets, and what a robot may know of them."""
 
-from protocol.scenario.scenario import Edge, RobotScenario, Scenario, linked_to, robot_view, scenario_digest
+from protocol.scenario.scenario import (
+    Edge,
+    RobotScenario,
+    Scenario,
+    lease_ms,
+    linked_to,
+    robot_view,
+    scenario_digest,
+)
 
-__all__ = ["Edge", "RobotScenario", "Scenario", "linked_to", "robot_view", "scenario_digest"]
+__all__ = ["Edge", "RobotScenario", "Scenario", "lease_ms", "linked_to", "robot_view", "scenario_digest"]

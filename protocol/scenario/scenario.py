@@ -81,6 +81,12 @@ def robots_per_column(scenario: Scenario) -> int:
     return max(1, int((scenario.arena.y_max - start.y) // start.spacing) + 1)
 
 
+def lease_ms(network: s.Network, robots: int) -> int:
+    """After how long a silent link is dead, ms: `network.lease_ms`, and longer for more than ten robots, which share a
+    machine's processors and would otherwise lose each other while they start."""
+    return max(network.lease_ms, network.lease_ms * robots // 10)
+
+
 def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:
     """Robots that share a physical link with robot `i`: those it listens to and those that listen to it."""
     heard = {j for a, j, _ in graph if a == i}

@@ -19,7 +19,7 @@ from pathlib import Path
 import psutil
 
 from protocol import keys
-from protocol.bus import Delivery
+from protocol.bus import Delivery, Lost
 from protocol.endpoints import free_tcp_endpoints, unix_endpoint
 from protocol.messages import Drive, Halt, Reading, Shared
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -51,6 +51,8 @@ def robot(i: int, n: int, endpoints: list[str], lockstep: bool) -> None:
     while True:
         event = receive(None)
         if event.__class__ is not Delivery:
+            if event == Lost(keys.WORLD):
+                break
             continue
         message = event.message
         kind = message.__class__
