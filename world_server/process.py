@@ -29,7 +29,7 @@ from world_server.world import World
 PROGRESS_PERIOD = 0.1  # wall-clock s
 POLL = 0.02  # s between two looks at what is not an event
 LAST_WORDS = 1.0  # s that the world waits for the robots' reports
-FAREWELL = 0.5  # s that the world stays for the outcome to be taken
+FAREWELL = 2.0  # s that the world stays at most for the outcome to be taken
 
 
 @dataclass(slots=True)

@@ -49,8 +49,11 @@ MAX_TIME = 600.0  # simulated s; who has not found the source by then counts wit
 
 def one(job: tuple[str, list[str], int]) -> Outcome:
     algorithm, settings, seed = job
-    overrides = [("algorithm", algorithm, "bench"), ("topology", "all", "bench"), ("case", 1, "bench")]
-    overrides += [("max_time", MAX_TIME, "bench"), ("seed", seed, "bench"), *((*parse_setting(text), "bench") for text in settings)]
+    values: list[tuple[str, object]] = [
+        ("algorithm", algorithm), ("topology", "all"), ("case", 1), ("max_time", MAX_TIME), ("seed", seed),
+        *map(parse_setting, settings),
+    ]  # fmt: skip
+    overrides = [(path, value, "bench") for path, value in values]
     return run_in_memory(load_scenario(None, overrides=overrides))
 
 

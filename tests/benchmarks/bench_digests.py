@@ -36,10 +36,14 @@ def main() -> None:
     parser.add_argument("--robots", nargs="+", type=int, default=[3, 5])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--full", action="store_true")
+    parser.add_argument("--from", dest="first", type=int, default=0, help="number of the first row")
     given = parser.parse_args()
-    unequal = 0
+    unequal = rows = 0
     for algorithm, (name, topology), robots in itertools.product(given.algorithms, TOPOLOGIES.items(), given.robots):
         if topology.robots not in (None, robots) and not (topology.robots == 4 and robots == 5):
+            continue
+        rows += 1
+        if rows <= given.first:
             continue
         count = topology.robots or robots
         equal = detected = 0
