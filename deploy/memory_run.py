@@ -18,6 +18,7 @@ from protocol.scenario import Scenario, robot_view
 from robot_agent.agent import Agent
 from robot_agent.report import report
 from robot_agent.session import RobotSession
+from robot_agent.wiring import wire
 from world_server.outcome import outcome
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.world import World
@@ -67,14 +68,8 @@ class MemorySwarm:
     def _robot(self, i: int) -> _Robot:
         view = robot_view(self.scenario, i)
         bus = self.network.join(keys.robot_name(i))
-        bus.subscribe(keys.robot(i, keys.READING), Reading)
-        bus.subscribe(keys.HALT, Halt)
-        for j, _ in view.row:
-            bus.subscribe(keys.robot(j, keys.SHARED), Shared)
-        tell = bus.publisher(keys.robot(i, keys.SHARED), reliable=True)
-        drive = bus.publisher(keys.robot(i, keys.DRIVE), reliable=True)
-        last_word = bus.publisher(keys.robot(i, keys.REPORT), reliable=True)
-        return _Robot(bus, RobotSession(Agent(view), tell, drive), last_word)
+        wires = wire(bus, view)
+        return _Robot(bus, RobotSession(Agent(view), wires.tell, wires.drive), wires.report)
 
     def start(self) -> None:
         """Send the first readings."""

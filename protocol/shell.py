@@ -12,9 +12,12 @@ import shutil
 import signal
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 from typing import BinaryIO, NoReturn
+
+from protocol.errors import OdourswarmError
 
 EXIT_OK, EXIT_BAD_INPUT, EXIT_FAILED = 0, 2, 3
 
@@ -48,6 +51,24 @@ def settle_memory() -> None:
     """Everything is set up: take it out of the garbage collector's rounds, which a lock-step would feel."""
     gc.collect()
     gc.freeze()
+
+
+def serve_until_done(serve: Callable[[], object], *, leash: bool, folder: Path) -> int:
+    """Run a process of a run that the launcher started; its exit status.
+
+    What failed is one sentence on standard error, where the launcher reads it.
+    """
+    stop_on_signals(leash=leash)
+    try:
+        serve()
+    except OdourswarmError as error:
+        print(error, file=sys.stderr)
+        return EXIT_FAILED
+    except Stop:
+        return EXIT_OK
+    finally:
+        clean_up_after_launcher(folder)
+    return EXIT_OK
 
 
 def ignore_signals() -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 import msgspec
 
-from protocol.errors import OdourswarmError
 from protocol.scenario.place import RobotPlace
-from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, clean_up_after_launcher, leave, stop_on_signals
+from protocol.shell import leave, serve_until_done
 from robot_agent.process import RobotProcess
 
 
@@ -21,18 +19,11 @@ def main() -> int:
     parser.add_argument("--place", type=Path, required=True)
     parser.add_argument("--leash", action="store_true")
     given = parser.parse_args()
-    stop_on_signals(leash=given.leash)
-    try:
-        place = msgspec.json.decode(given.place.read_bytes(), type=RobotPlace)
-        RobotProcess(given.run, place).serve()
-    except OdourswarmError as error:
-        print(error, file=sys.stderr)
-        return EXIT_FAILED
-    except Stop:
-        return EXIT_OK
-    finally:
-        clean_up_after_launcher(given.place.parent)
-    return EXIT_OK
+
+    def serve() -> None:
+        RobotProcess(given.run, msgspec.json.decode(given.place.read_bytes(), type=RobotPlace)).serve()
+
+    return serve_until_done(serve, leash=given.leash, folder=given.place.parent)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
 from robot_agent.report import report
 from robot_agent.session import RobotSession
+from robot_agent.wiring import wire
 
 LINK_POLL = 0.01  # s between two looks at the links while the swarm comes up
 ASK_TIMEOUT = 2.0  # s for one query
@@ -83,18 +84,11 @@ class RobotProcess:
             bus.close()
 
     def _prepare(self, bus: Bus, view: RobotScenario) -> tuple[RobotSession, Callable[[Report], None]]:
-        i = view.robot
-        bus.subscribe(keys.robot(i, keys.READING), Reading)
-        bus.subscribe(keys.HALT, Halt)
-        for j, _ in view.row:
-            bus.subscribe(keys.robot(j, keys.SHARED), Shared)
-        tell = bus.publisher(keys.robot(i, keys.SHARED), reliable=True)
-        drive = bus.publisher(keys.robot(i, keys.DRIVE), reliable=True)
-        last_word = bus.publisher(keys.robot(i, keys.REPORT), reliable=True)
+        wires = wire(bus, view)
         agent = Agent(view)
-        belief = keys.robot(i, keys.BELIEF)
-        watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), drive)
-        return RobotSession(agent, tell, watched.drive), last_word
+        belief = keys.robot(view.robot, keys.BELIEF)
+        watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
+        return RobotSession(agent, wires.tell, watched.drive), wires.report
 
     def _link_up(self, bus: Bus, view: RobotScenario) -> None:
         """Wait until the declared links are the actual ones and say so to the world."""

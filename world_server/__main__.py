@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 import msgspec
 
-from protocol.errors import OdourswarmError
+from protocol.messages import Outcome
 from protocol.scenario import Scenario
-from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, clean_up_after_launcher, leave, stop_on_signals
+from protocol.shell import leave, serve_until_done
 from world_server.process import WorldProcess
 
 
@@ -22,19 +21,13 @@ def main() -> int:
     for flag in ("--launcher", "--recorder", "--leash"):
         parser.add_argument(flag, action="store_true")
     given = parser.parse_args()
-    stop_on_signals(leash=given.leash)
-    try:
+
+    def serve() -> Outcome:
         scenario = msgspec.json.decode((given.folder / "scenario.json").read_bytes(), type=Scenario)
         endpoints = msgspec.json.decode((given.folder / "endpoints.json").read_bytes(), type=tuple[str, ...])
-        WorldProcess(given.run, scenario, endpoints, recorder=given.recorder, launcher=given.launcher).serve()
-    except OdourswarmError as error:
-        print(error, file=sys.stderr)
-        return EXIT_FAILED
-    except Stop:
-        return EXIT_OK
-    finally:
-        clean_up_after_launcher(given.folder)
-    return EXIT_OK
+        return WorldProcess(given.run, scenario, endpoints, recorder=given.recorder, launcher=given.launcher).serve()
+
+    return serve_until_done(serve, leash=given.leash, folder=given.folder)
 
 
 if __name__ == "__main__":

@@ -111,7 +111,7 @@ class WorldProcess:
             elif isinstance(event, Seen):
                 members.discard(event.name)
                 gone.discard(event.name)
-            elif isinstance(event, Lost):
+            elif isinstance(event, Lost) and keys.robot_of(event.name) is not None:
                 # It may only have been held up while everybody starts, and come back.
                 gone.add(event.name)
             elif event is None and not waiting and not members and not gone and self._all_matched(bus):

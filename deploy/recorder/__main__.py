@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 import msgspec
 
 from deploy.recorder.process import RecorderProcess
-from protocol.errors import OdourswarmError
 from protocol.scenario import Scenario
-from protocol.shell import EXIT_FAILED, EXIT_OK, Stop, clean_up_after_launcher, leave, stop_on_signals
+from protocol.shell import leave, serve_until_done
 
 
 def main() -> int:
@@ -23,19 +21,13 @@ def main() -> int:
     parser.add_argument("--view", action="store_true")
     parser.add_argument("--leash", action="store_true")
     given = parser.parse_args()
-    stop_on_signals(leash=given.leash)
-    try:
+
+    def serve() -> None:
         scenario = msgspec.json.decode((given.folder / "scenario.json").read_bytes(), type=Scenario)
         endpoints = msgspec.json.decode((given.folder / "endpoints.json").read_bytes(), type=tuple[str, ...])
         RecorderProcess(given.run, scenario, endpoints, given.record, given.view).serve()
-    except OdourswarmError as error:
-        print(error, file=sys.stderr)
-        return EXIT_FAILED
-    except Stop:
-        return EXIT_OK
-    finally:
-        clean_up_after_launcher(given.folder)
-    return EXIT_OK
+
+    return serve_until_done(serve, leash=given.leash, folder=given.folder)
 
 
 if __name__ == "__main__":

@@ -16,13 +16,16 @@ from pathlib import Path
 
 import psutil
 import pytest
+import zenoh
 from swarm_helpers import near_the_plume
 
 from deploy.launch.swarm import SwarmRun
 from deploy.memory_run import run_in_memory
+from protocol.codec import Codec
 from protocol.errors import SwarmFailure
-from protocol.messages import Event, Outcome, Progress
+from protocol.messages import Drive, Event, Outcome, Progress
 from protocol.scenario import Scenario
+from protocol.zenoh_bus import token_of
 
 pytestmark = pytest.mark.processes
 DEADLINE = 60.0
@@ -106,6 +109,42 @@ def test_truth_is_the_same_over_zenoh_and_in_memory(algorithm, topology):
     assert swarm.outcome.digest == expected.digest
     assert swarm.outcome.estimate_error == expected.estimate_error
     assert swarm.outcome.messages["refused"] == swarm.outcome.messages["dropped"] == 0
+
+
+def stranger(endpoints: list[str]) -> zenoh.Session:
+    """Somebody who is linked to everyone and belongs to nobody."""
+    config = zenoh.Config()
+    for path, value in {
+        "mode": "peer",
+        "connect/endpoints": endpoints,
+        "connect/timeout_ms": 5000,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+    }.items():
+        config.insert_json5(path, json.dumps(value))
+    return zenoh.open(config)
+
+
+def test_strangers_messages_on_every_key_are_counted_and_change_nothing(folder):
+    scenario = near_the_plume(topology="ring", seed=6, max_time=60.0, start__y=-45.0)
+    with Swarm(scenario) as swarm:
+        swarm.under_way()
+        endpoints = [f"unixsock-stream/{path}" for path in folder.glob("odour-*/*.sock")]
+        assert len(endpoints) == 6
+        foreign = Codec(12345).encode(Drive(1, 30, 0.8, 0.8))
+        own = Codec(token_of("test")).encode(Drive(1, 30, 0.8, 0.8))
+        with stranger(endpoints) as session:
+            for leaf in ("reading", "shared", "drive", "report", "belief", "join"):
+                for i in range(5):
+                    for frame in (b"", b"\xff" * 40, foreign, own[:-1], own + b"x"):
+                        session.put(f"odour/test/robot/{i}/{leaf}", frame)
+            for key in ("halt", "outcome", "progress", "truth", "alive/robot/1"):
+                session.put(f"odour/test/{key}", b"junk")
+            swarm.finish()
+    assert swarm.error is None
+    assert swarm.outcome.messages["refused"] > 0
+    assert swarm.outcome.faults == ()
+    assert swarm.outcome.digest == run_in_memory(scenario).digest
 
 
 def test_killed_robot_leaves_the_barrier_and_the_outcome_tells():

@@ -1,0 +1,31 @@
+"""What a robot says and hears on a bus, whichever bus it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from protocol import keys
+from protocol.bus import Bus, Publish
+from protocol.messages import Halt, Reading, Shared
+from protocol.scenario import RobotScenario
+
+
+@dataclass(frozen=True, slots=True)
+class Wires:
+    """A robot's publications."""
+
+    tell: Publish  # its shared state
+    drive: Publish
+    report: Publish
+
+
+def wire(bus: Bus, view: RobotScenario) -> Wires:
+    """Subscribe to what robot `view.robot` may hear (its readings, its declared neighbours, the end of the run) and
+    declare what it says."""
+    i = view.robot
+    bus.subscribe(keys.robot(i, keys.READING), Reading)
+    bus.subscribe(keys.HALT, Halt)
+    for j, _ in view.row:
+        bus.subscribe(keys.robot(j, keys.SHARED), Shared)
+    leaves = (keys.SHARED, keys.DRIVE, keys.REPORT)
+    return Wires(*(bus.publisher(keys.robot(i, leaf), reliable=True) for leaf in leaves))
