@@ -28,7 +28,8 @@ from protocol.zenoh_bus import ZenohBus, token_of
 POLL = 0.1  # s between two looks at the processes
 FLUSH = 60.0  # s that the recorder may take to write what it holds after the run
 LEAVE = 2.0  # s that the processes may take to leave after the outcome
-INTERRUPT = 1.0  # s that the world may take to end an interrupted run; all is over within 2 s
+INTERRUPT = 1.2  # s that the world and the recorder may take to end an interrupted run,
+HURRY = 0.5  # s that whoever is left may take after that; all is over within 2 s
 
 
 @dataclass(slots=True)
@@ -51,10 +52,14 @@ class SwarmRun:
         # Short: a unix socket's path has room for about 100 bytes.
         folder = Path(tempfile.mkdtemp(prefix="odour-"))
         children = self.children = Children(folder)
+        patience = LEAVE
         try:
             return self._execute(folder, children, watcher)
+        except KeyboardInterrupt:
+            patience = HURRY
+            raise
         finally:
-            children.end(LEAVE)
+            children.end(patience)
             shutil.rmtree(folder, ignore_errors=True)
 
     def _execute(self, folder: Path, children: Children, watcher: Watcher) -> Outcome:
@@ -135,5 +140,7 @@ class SwarmRun:
         if world.status is None:
             world.process.terminate()
         while time.monotonic() < deadline and world.status is None:
-            bus.receive(0.05)
-        children.wait(max(0.0, deadline - time.monotonic()), [n for n in children.members if n == "recorder"])
+            event = bus.receive(0.05)
+            if isinstance(event, Delivery) and isinstance(event.message, Outcome):
+                break
+        children.wait(max(0.0, deadline - time.monotonic()), ["recorder"])
