@@ -155,7 +155,7 @@ class Progress(Message, frozen=True, array_like=True, gc=False):
     t: Number
     live: int
     detections: int
-    closest: Number  # smallest distance of a robot to the source so far, m
+    closest: Number  # distance of the robot that is nearest to the source, m
 
 
 class Outcome(Message, frozen=True, array_like=True, gc=False):

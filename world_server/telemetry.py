@@ -28,12 +28,12 @@ class Telemetry:
         self._count = 0
 
     def tick(self, *, last: bool = False) -> None:
-        """Publish what is due at the world's tick; everything at the last one."""
+        """Publish what is due at the world's tick; at the last one the robots in any case."""
         k = self._world.tick
         if last or k % self._truth_ticks == 0:
             self._truth(truth_of(self._world, self._count))
             self._count += 1
-        if last or k % self.field_ticks == 0:
+        if k % self.field_ticks == 0:
             self._field(field_of(self._world))
 
 
