@@ -14,9 +14,9 @@ from typing import Any
 
 from protocol.bus import Counters
 
-MAX_ENTRIES = 20_000
+MAX_ENTRIES = 50_000  # waiting at a time
 BIG_FRAME = 4096  # bytes
-MAX_BIG_FRAMES = 256  # waiting at a time
+MAX_BIG_BYTES = 256 << 20  # of big frames, waiting at a time
 # Windows does not run signal handlers while a lock is waited for.
 _PATIENCE = 0.2 if sys.platform == "win32" else None  # s
 
@@ -30,12 +30,12 @@ class Inbox:
         entries: SimpleQueue[Any] = SimpleQueue()
         self._counters = counters
         self._get, self._put, self._size = entries.get, entries.put, entries.qsize
-        self._big = 0  # big frames waiting
+        self._big = 0  # bytes of big frames waiting
         self._lock = Lock()  # of _big; small frames need none
 
     def offer(self, entry: Any, frame: bytes) -> bool:
         """Queue `entry`, which holds `frame`, if there is room; whether there was."""
-        if self._size() >= MAX_ENTRIES or (len(frame) > BIG_FRAME and not self._room_for_big()):
+        if self._size() >= MAX_ENTRIES or (len(frame) > BIG_FRAME and not self._room_for_big(len(frame))):
             self._counters.dropped += 1
             return False
         self._put(entry)
@@ -45,10 +45,10 @@ class Inbox:
         """Queue `entry` always."""
         self._put(entry)
 
-    def release(self) -> None:
-        """Say that a frame of more than `BIG_FRAME` bytes was taken out and opened."""
+    def release(self, frame: bytes) -> None:
+        """Say that `frame`, of more than `BIG_FRAME` bytes, was taken out and opened."""
         with self._lock:
-            self._big -= 1
+            self._big -= len(frame)
 
     def take(self, timeout: float | None) -> Any:
         """Next entry; None after `timeout` seconds without one (None: wait for ever, 0: do not wait)."""
@@ -65,9 +65,9 @@ class Inbox:
         except Empty:
             return None
 
-    def _room_for_big(self) -> bool:
+    def _room_for_big(self, size: int) -> bool:
         with self._lock:
-            if self._big >= MAX_BIG_FRAMES:
+            if self._big + size > MAX_BIG_BYTES:
                 return False
-            self._big += 1
+            self._big += size
             return True

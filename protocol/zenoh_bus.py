@@ -224,7 +224,7 @@ class ZenohBus:
     def _opened(self, key: str, kinds: frozenset[type[Message]], frame: bytes, query: Any) -> BusEvent | None:
         """What a frame that arrived says; None when it is refused."""
         if len(frame) > BIG_FRAME:
-            self._inbox.release()
+            self._inbox.release(frame)
         message = self._codec.decode(frame)
         if message.__class__ in kinds:
             self.counters.received += 1

@@ -103,6 +103,8 @@ class SwarmRun:
         if recorded and children.failed(["recorder"]):
             words = children.members["recorder"].last_words()
             raise SwarmFailure(f"the recorder failed: {words or 'without a word'}")
+        if recorded and (words := children.members["recorder"].last_words()):
+            watcher.event(Event(outcome.ticks, outcome.time, -1, words))
         return outcome
 
     def _watch(self, bus: Bus, children: Children, watcher: Watcher) -> Outcome:
@@ -127,9 +129,10 @@ class SwarmRun:
         if children.members[keys.WORLD].status is not None and not failed:
             raise SwarmFailure("the world ended without an outcome.")
         if failed:
-            # The others fail in consequence; the first in order of start is the cause, the world before the robots,
-            # unless it only complains that somebody is missing.
-            child = next((c for c in failed if c.name != keys.WORLD), failed[0])
+            # When one fails the others do in consequence, and say that somebody is gone or missing: the cause is another.
+            consequences = ("is gone", "is not complete")
+            told = [c for c in failed if not any(text in c.last_words() for text in consequences)]
+            child = (told or sorted(failed, key=lambda c: c.name != keys.WORLD))[0]
             how = f"status {child.status}" if (child.status or 0) > 0 else f"signal {-(child.status or 0)}"
             raise SwarmFailure(f"{child.name} ended with {how}: {child.last_words() or 'it said nothing.'}")
 

@@ -1,8 +1,8 @@
 """The recorder as a process: linked to the world and to every robot, in nobody's way.
 
-Rules: it joins the bus first and loads Rerun afterwards; whatever it does takes the lowest priority, and what it is
-sent is best effort, so that the swarm's speed does not depend on it. It writes twice a second, so that a kill leaves
-what was written.
+Rules: it is ready, Rerun loaded and the file open, before the run begins; from then on it takes a low priority, and what
+it is sent is best effort, so that the swarm's speed does not depend on it. It writes twice a second, so that a kill
+leaves what was written.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from protocol.shell import Stop, ignore_signals
 from protocol.zenoh_bus import ZenohBus, token_of
 
 FLUSH_PERIOD = 0.5  # wall-clock s
+NICE = 5  # enough to let the swarm go first, and not so much that a busy machine never draws
 
 
 @dataclass(slots=True)
@@ -61,10 +62,11 @@ class RecorderProcess:
             bus.subscribe(keys.HALT, Halt)
             for i in range(self.scenario.robots):
                 bus.subscribe(keys.robot(i, keys.BELIEF), Belief)
-            with contextlib.suppress(OSError):
-                os.nice(19)  # this thread, and those that Rerun starts from it; the bus has its own already
             recording = Recording(self.scenario, path=self.record, view=self.view, run=self.run)
+            with contextlib.suppress(OSError, AttributeError):  # Windows has no nice
+                os.nice(NICE)  # this thread, which draws; those that receive have started already
             try:
+                # The first `receive` announces the recorder; the world waits for that.
                 self._listen(bus, recording)
             finally:
                 ignore_signals()

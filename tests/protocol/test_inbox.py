@@ -36,14 +36,14 @@ def test_a_flood_loses_its_newest_entries_and_no_event(monkeypatch: pytest.Monke
 
 
 def test_big_frames_have_less_room_until_they_are_taken_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MAX_BIG_FRAMES", 2)
+    monkeypatch.setattr(module, "MAX_BIG_BYTES", 2 * len(BIG))
     counters = Counters()
     inbox = Inbox(counters)
     assert [inbox.offer(k, BIG) for k in range(3)] == [True, True, False]
     assert inbox.offer("small", SMALL)
     assert counters.dropped == 1
     inbox.take(0)
-    inbox.release()
+    inbox.release(BIG)
     assert inbox.offer("big", BIG)
 
 
