@@ -46,7 +46,7 @@ class Display:
     def event(self, event: Event) -> None:
         """Something that a person wants to know."""
         who = f"robot {event.robot}: " if event.robot >= 0 and not event.text.startswith("robot") else ""
-        self._console.print(Text.assemble((f"{event.t:8.2f} s  ", "dim"), f"{who}{event.text}"))
+        self._console.print(Text.assemble((f"{event.t:8.2f} s  ", "dim"), f"{who}{event.text}"), soft_wrap=True)
 
     def _line(self, p: Progress | None) -> Text:
         if p is None:

@@ -13,7 +13,7 @@ from protocol.scenario import Scenario
 
 def print_verdict(outcome: Outcome, scenario: Scenario, record: Path | None) -> None:
     """Found or not, by whom, how well, and what to do next; on stdout."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     console.print(_headline(outcome, scenario))
     errors = [error for error in outcome.estimate_error if error is not None]
     facts = [f"{outcome.ticks} ticks in {outcome.wall_s:.1f} s ({outcome.ticks_per_s:.0f} ticks/s)"]
