@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NoReturn
 
-from protocol.errors import ScenarioError
+from protocol.errors import OdourswarmError, ScenarioError
 from protocol.scenario import Scenario
 from protocol.scenario.load import Override, load_scenario, parse_setting
+from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
 from robot_agent.algorithms import ALGORITHMS
+
+INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
 
 def read_scenario(
@@ -40,6 +44,22 @@ def read_scenario(
 def complain(error: Exception | str) -> None:
     """Print a sentence that is meant for the person at the terminal."""
     print(error, file=sys.stderr)
+
+
+def be_a_member(serve: Callable[[], int]) -> NoReturn:
+    """Be a process of a run by hand: `serve` gives the exit status; what fails is one sentence, a signal ends it."""
+    stop_on_signals(leash=False)
+    try:
+        status = serve()
+    except ScenarioError as error:
+        complain(error)
+        status = EXIT_BAD_INPUT
+    except OdourswarmError as error:
+        complain(error)
+        status = EXIT_FAILED
+    except Stop:
+        status = INTERRUPTED
+    leave(status)
 
 
 def _point(text: str) -> tuple[float, float]:

@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from deploy.cli.options import complain
+from deploy.cli.options import be_a_member
 from deploy.cli.world import check_run_name
-from protocol.errors import OdourswarmError, ScenarioError
-from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
+from protocol.shell import EXIT_OK
 
 
 def robot(
@@ -22,18 +21,10 @@ def robot(
     """Be one robot: ask the world who I am, link up with my neighbours, take part until the run is over."""
     from robot_agent.process import RobotProcess, ask_place
 
-    status = 0
-    stop_on_signals(leash=False)
-    try:
+    def serve() -> int:
         check_run_name(run)
         place = ask_place(run, robot, world, timeout)
         RobotProcess(run, place, say=lambda text: print(f"robot {robot}: {text}", file=sys.stderr)).serve()
-    except ScenarioError as error:
-        complain(error)
-        status = EXIT_BAD_INPUT
-    except OdourswarmError as error:
-        complain(error)
-        status = EXIT_FAILED
-    except Stop:
-        status = 130
-    leave(status)
+        return EXIT_OK
+
+    be_a_member(serve)

@@ -11,13 +11,11 @@ from typing import Annotated, NoReturn
 import typer
 from typer import Argument, Option
 
-from deploy.cli.options import complain, read_scenario
+from deploy.cli.options import INTERRUPTED, complain, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
 from protocol.scenario import Scenario
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED
-
-INTERRUPTED = 130
 
 
 def run(

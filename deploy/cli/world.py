@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from deploy.cli.options import complain, read_scenario
-from protocol.errors import OdourswarmError, ScenarioError
+from deploy.cli.options import be_a_member, complain, read_scenario
+from protocol.errors import ScenarioError
 from protocol.keys import RUN_NAME
-from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
+from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_OK
 
 
 def world(
@@ -37,11 +37,8 @@ def world(
         raise typer.Exit(EXIT_BAD_INPUT) from None
     from world_server.process import WorldProcess
 
-    stop_on_signals(leash=False)
-    status = 0
-    try:
+    def serve() -> int:
         outcome = WorldProcess(run, scenario, scenario.network.endpoints, recorder=recorder).serve()
-        status = EXIT_FAILED if outcome.failed else 0
         if json:
             import msgspec
 
@@ -50,12 +47,9 @@ def world(
             from deploy.cli.verdict import print_verdict
 
             print_verdict(outcome, scenario, None)
-    except OdourswarmError as error:
-        complain(error)
-        status = EXIT_FAILED
-    except Stop:
-        status = 130
-    leave(status)
+        return EXIT_FAILED if outcome.failed else EXIT_OK
+
+    be_a_member(serve)
 
 
 def check_run_name(run: str) -> None:
