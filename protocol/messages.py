@@ -65,7 +65,8 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     h_x: Number  # my decision h^ic (3.31), m
     h_y: Number
     relayed: Annotated[tuple[RelayedState, ...], RECORDS] = ()  # states of others, passed on
-    virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # an algorithm's own numbers, e.g. a virtual position
+    virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # a controller's own numbers, e.g. a virtual position
+    notes: Annotated[tuple[Number, ...], RECORDS] = ()  # a decision's own numbers, e.g. what it remembers to have smelt
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):

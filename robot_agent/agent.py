@@ -13,7 +13,7 @@ from protocol.scenario import RobotScenario
 from robot_agent.algorithms import algorithm
 from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
-from robot_agent.interfaces import Plan
+from robot_agent.interfaces import Around, Plan
 from robot_agent.neighbours import Neighbours
 from robot_agent.planning.search import CrosswindSearch
 
@@ -34,6 +34,7 @@ class Agent:
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self._own: Own | None = None
+        self._at_once = parts.at_once
         self._begun = False
         self._detected = False
         self._plan: Plan | None = None
@@ -59,8 +60,9 @@ class Agent:
             if self._detected:
                 self._group.detect(own.t, own.concentration, own.x, own.y)
                 self._decision.detect(own)
+            if self._detected or self._at_once:
                 self._begin(own)
-            if not self._group.started:
+            if not self._begun and not self._group.started:
                 self._plan = self._search.plan(own, self._group)
         group, (fusion_x, fusion_y), (h_x, h_y) = self._group, self._decision.state, self._decision.h
         return Shared(
@@ -84,6 +86,8 @@ class Agent:
             h_x,
             h_y,
             self._neighbours.relay(own.tick),
+            self._controller.virtual(),
+            self._decision.notes(own) if self._begun else (),
         )
 
     def act(self, heard: Iterable[Shared]) -> Drive:
@@ -96,17 +100,20 @@ class Agent:
         neighbours.hear(own.tick, heard)
         for state in heard:
             group.merge(state)
-        if group.started:
+        others = neighbours.others(own.tick)
+        if group.started or self._begun:
             self._begin(own)
             if self.decision_due or self._plan is None:
-                self._decision.decide(own, group, self._detected)
+                self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others))
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
+            else:
+                self._plan = self._planner.follow(own, self._plan)
             self._decision.advance(neighbours.fresh, self._dt)
         else:
             # The heading may have changed by what was heard in this very tick.
             self._plan = self._search.plan(own, group)
-        u = self._controller.control(own, neighbours.fresh, neighbours.others(own.tick), self._plan, self._dt)
+        u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
         return Drive(self.robot, own.tick, tau_left, tau_right)
 

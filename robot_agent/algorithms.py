@@ -26,6 +26,7 @@ class Algorithm:
     decision: Callable[[RobotScenario], Decision]
     planner: Callable[[RobotScenario], Planner]
     controller: Callable[[RobotScenario], Controller]
+    at_once: bool = False  # begins at the start, not at the first detection: no common search goes before it
 
 
 ALGORITHMS: dict[str, Algorithm] = {

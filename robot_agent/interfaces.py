@@ -1,15 +1,15 @@
 """The interface of an algorithm: a decision (where is the source?), a planner (where to go?), a controller (how?).
 
 Rules: each part is made from the robot's scenario; it is given what the robot knows and returns plain values; it never
-sees a message it was not allowed to hear. A new algorithm is one new file for what is new in it and one line in
-`robot_agent.algorithms`.
+sees a message it was not allowed to hear. A part names its interface as its base and overrides what it needs. A new
+algorithm is one new file for what is new in it and one line in `robot_agent.algorithms`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from protocol.messages import Reading, Shared
 from robot_agent.group import Group
@@ -21,6 +21,13 @@ Point = tuple[float, float]
 Fresh = Sequence[tuple[float, Shared]]  # (a_ij, state) of the neighbours that count now
 
 SEARCH, TRACE, LOST = "search", "trace", "lost"
+
+
+class Around(NamedTuple):
+    """The other robots, as far as one knows of them."""
+
+    fresh: Fresh  # neighbours on the graph, with all that they say
+    others: Sequence[Placed]  # everyone whose place is known, neighbours or not
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,21 +51,18 @@ class Decision(Protocol):
 
     def prefill(self, reading: Reading) -> None:
         """Take the wind that was recorded before the start."""
-        ...
 
     def record(self, own: Own) -> None:
         """At every decision instant from the start on: remember what is sensed."""
-        ...
 
     def begin(self, own: Own) -> None:
-        """Someone has detected the odour for the first time."""
+        """Someone has detected the odour for the first time (or the algorithm begins at once)."""
         ...
 
     def detect(self, own: Own) -> None:
         """This robot detects the odour now."""
-        ...
 
-    def decide(self, own: Own, group: Group, detected: bool) -> None:
+    def decide(self, own: Own, group: Group, detected: bool, around: Around) -> None:
         """At every decision instant after `begin`."""
         ...
 
@@ -66,14 +70,30 @@ class Decision(Protocol):
         """At every tick after `begin`: exchange with the neighbours."""
         ...
 
+    def notes(self, own: Own) -> tuple[float, ...]:
+        """Own numbers to tell the neighbours at this tick (`Shared.notes`)."""
+        return ()
+
 
 class Planner(Protocol):
     """Makes a plan from the decision."""
 
-    def plan(self, own: Own, h: Point, lost: bool) -> Plan: ...
+    def plan(self, own: Own, h: Point, lost: bool) -> Plan:
+        """At every decision instant after `begin`."""
+        ...
+
+    def follow(self, own: Own, plan: Plan) -> Plan:
+        """At every tick after `begin`: the plan as it is now, for plans that move between decisions."""
+        return plan
 
 
 class Controller(Protocol):
     """Makes the control signal u_i of (1.7) from the plan, at every tick."""
 
-    def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point: ...
+    def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
+        """u_i, m/s^2."""
+        ...
+
+    def virtual(self) -> tuple[float, ...]:
+        """Own numbers to tell the neighbours at the next tick (`Shared.virtual`)."""
+        return ()

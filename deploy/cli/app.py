@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from deploy.cli.reproduce import reproduce
 from deploy.cli.robot import robot
 from deploy.cli.run import run
 from deploy.cli.topology import topology
@@ -19,7 +20,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, world, robot, topology, view):
+for command in (run, world, robot, topology, reproduce, view):
     app.command()(command)
 
 

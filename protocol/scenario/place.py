@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from protocol.scenario.scenario import RobotScenario, Scenario, robot_view
-from protocol.scenario.sections import Table
+from protocol.scenario.table import Table
 
 
 class RobotPlace(Table, frozen=True):

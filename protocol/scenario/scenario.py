@@ -12,16 +12,18 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from protocol.scenario import laws
 from protocol.scenario import sections as s
+from protocol.scenario.table import Count, Table
 
 Edge = tuple[int, int, float]  # (i, j, a_ij): robot i listens to robot j with weight a_ij
 
 
-class Scenario(s.Table, frozen=True):
+class Scenario(Table, frozen=True):
     """All that decides a run."""
 
     seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
-    robots: s.Count = 5  # N
+    robots: Count = 5  # N
     algorithm: str = "cfpso"
     topology: str = "ring"  # a name, or the path of a graph file
     preset: Literal["corrected", "literal"] = "corrected"
@@ -41,15 +43,29 @@ class Scenario(s.Table, frozen=True):
     fusion: s.Fusion = s.Fusion()
     planning: s.Planning = s.Planning()
     control: s.Control = s.Control()
-    simple: s.Simple = s.Simple()
-    repulsion: s.Repulsion = s.Repulsion()
-    cfpso: s.Cfpso = s.Cfpso()
-    dcs: s.Dcs = s.Dcs()
+    simple: laws.Simple = laws.Simple()
+    repulsion: laws.Repulsion = laws.Repulsion()
+    pso: laws.Pso = laws.Pso()
+    cpso: laws.Cpso = laws.Cpso()
+    consensus: laws.Consensus = laws.Consensus()
+    spiral: laws.Spiral = laws.Spiral()
+    cfpso: laws.Cfpso = laws.Cfpso()
+    cfpso_ft: laws.CfpsoFt = laws.CfpsoFt()
+    dcs: laws.Dcs = laws.Dcs()
+    dcs_ft: laws.DcsFt = laws.DcsFt()
+    ftmcs: laws.Ftmcs = laws.Ftmcs()
+    wui: laws.Wui = laws.Wui()
+    ppso_im: laws.PpsoIm = laws.PpsoIm()
+    lpso: laws.Lpso = laws.Lpso()
+    ccs: laws.Ccs = laws.Ccs()
+    surge: laws.Surge = laws.Surge()
+    walk: laws.Walk = laws.Walk()
+    drill: laws.Drill = laws.Drill()
     network: s.Network = s.Network()
     recording: s.Recording = s.Recording()
 
 
-class RobotScenario(s.Table, frozen=True):
+class RobotScenario(Table, frozen=True):
     """What robot `robot` may know of the scenario: itself, its own row of the graph, and the parameters of the laws."""
 
     robot: int
@@ -68,10 +84,24 @@ class RobotScenario(s.Table, frozen=True):
     fusion: s.Fusion
     planning: s.Planning
     control: s.Control
-    simple: s.Simple
-    repulsion: s.Repulsion
-    cfpso: s.Cfpso
-    dcs: s.Dcs
+    simple: laws.Simple
+    repulsion: laws.Repulsion
+    pso: laws.Pso
+    cpso: laws.Cpso
+    consensus: laws.Consensus
+    spiral: laws.Spiral
+    cfpso: laws.Cfpso
+    cfpso_ft: laws.CfpsoFt
+    dcs: laws.Dcs
+    dcs_ft: laws.DcsFt
+    ftmcs: laws.Ftmcs
+    wui: laws.Wui
+    ppso_im: laws.PpsoIm
+    lpso: laws.Lpso
+    ccs: laws.Ccs
+    surge: laws.Surge
+    walk: laws.Walk
+    drill: laws.Drill
     network: s.Network
 
 
@@ -99,8 +129,7 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
     degrees: dict[int, float] = {}
     for k, _, a_kj in scenario.graph:
         degrees[k] = degrees.get(k, 0.0) + a_kj
-    tables = ("arena", "body", "timing", "search", "decision", "fusion", "planning", "control", "simple", "repulsion",
-              "cfpso", "dcs", "network")  # fmt: skip
+    both = set(RobotScenario.__struct_fields__) & set(Scenario.__struct_fields__) - {"robots", "seed", "algorithm"}
     return RobotScenario(
         robot=i,
         robots=scenario.robots,
@@ -110,7 +139,7 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
         linked=linked_to(scenario.graph, i),
         max_degree=max(degrees.values(), default=0.0),
         complete=len(scenario.graph) == scenario.robots * (scenario.robots - 1),
-        **{name: getattr(scenario, name) for name in tables},
+        **{name: getattr(scenario, name) for name in both},
     )
 
 

@@ -1,6 +1,6 @@
 """What a scenario may say: the dotted name of every value, its type, and what is allowed, in words.
 
-Rules: everything here is read off the tables (sections.py, scenario.py), nothing is listed twice; a new value in a
+Rules: everything here is read off the tables (sections.py, laws, scenario.py), nothing is listed twice; a new value in a
 table is at once known to files, flags and error sentences.
 """
 
@@ -14,7 +14,7 @@ import msgspec
 from msgspec import inspect
 
 from protocol.scenario.scenario import Scenario
-from protocol.scenario.sections import Table
+from protocol.scenario.table import Table
 
 GUARD = 1e9  # the bound of numbers that need none: not worth a person's attention unless it is crossed
 LONGEST = 60  # characters of a value quoted in a sentence

@@ -3,26 +3,16 @@
 Rules: every value has a default that works (the `corrected` preset); bounds stand in the type; SI units and radians;
 concentration in ppt. What a robot may know and what only the world knows are different tables, so that a robot's
 scenario can leave the truth out by leaving tables out (see `robot_view`). Switches that depart from the thesis are
-listed in docs/departures.md.
+listed in docs/departures.md. The tables of the control laws and algorithms stand in `protocol.scenario.laws`.
 """
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from msgspec import Meta, Struct
+from msgspec import Meta
 
-Positive = Annotated[float, Meta(gt=0, le=1e9)]
-NonNegative = Annotated[float, Meta(ge=0, le=1e9)]
-Real = Annotated[float, Meta(ge=-1e9, le=1e9)]
-Fraction = Annotated[float, Meta(ge=0, le=1)]
-OpenFraction = Annotated[float, Meta(gt=0, lt=1)]
-Count = Annotated[int, Meta(ge=1, le=1000)]
-Point = tuple[Real, Real]
-
-
-class Table(Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of all tables."""
+from protocol.scenario.table import Fraction, NonNegative, OpenFraction, Point, Positive, Real, Table
 
 
 class Arena(Table, frozen=True):
@@ -153,51 +143,6 @@ class Planning(Table, frozen=True):
     slope_limit: NonNegative = 1.0  # bound on |w_y / w_x|; 0: none
     slope: Literal["magnitude", "printed"] = "magnitude"  # |w_y| / |w_x|, or |w_y| / w_x as printed
     speed: Positive = 0.8  # |v_c|, m/s
-
-
-class Simple(Table, frozen=True):
-    """The cooperative law (3.34) with (3.35), Table 3.2."""
-
-    a: OpenFraction = 0.5
-    delta: Positive = 0.2
-
-
-class Repulsion(Table, frozen=True):
-    """The potential (3.35), (3.36), Table 3.2."""
-
-    kappa: Positive = 0.5
-    d: Positive = 4.0  # m
-    d0: Positive = 6.6  # m
-    form: Literal["sum", "switch"] = "sum"  # added to (3.34), or instead of it within d0 as printed
-
-
-class Cfpso(Table, frozen=True):
-    """The PSO-based law (4.12), Table 4.5."""
-
-    omega: Annotated[float, Meta(lt=1, ge=-100)] = -0.5
-    alpha: Positive = 8.0
-    a: OpenFraction = 0.5
-    gamma: Annotated[float, Meta(gt=0, le=1)] = 0.5
-    beta: Positive = 0.01
-    repulsion: bool = True  # (3.35) added; the thesis has no collision avoidance here
-
-
-class Dcs(Table, frozen=True):
-    """The consensus-based laws (5.5), (5.7), Tables 5.3 and 5.4."""
-
-    beta: Positive = 0.5
-    gamma: Positive = 2.0
-    alpha: OpenFraction = 0.6
-    lam: Positive = 0.1  # lambda of (5.5)
-    lam1: Positive = 0.1  # lambda_1 of (5.7)
-    lam2: Positive = 0.1
-    radius: Positive = 5.0  # of the formation h_i, m
-    sectors: Annotated[int, Meta(ge=0, le=1000)] = 0  # h_i at 2 pi i / sectors; 0: N (the thesis prints 5)
-    circle: Positive = 10.0  # r of the circular motion, m
-    turn: Positive = 0.06  # omega_0, rad/s; printed 0.1 asks r omega_0 = 1.0 m/s of robots that do 0.8
-    repulsion: bool = True  # (3.35) added; the thesis has no collision avoidance here
-    clearance: Positive = 2.0  # its d for this law, m: below the spacing of the formation
-    order: Literal["algorithm-5", "algorithm-2"] = "algorithm-5"  # lost -> circular, or as Algorithm 2 prints it
 
 
 class Control(Table, frozen=True):

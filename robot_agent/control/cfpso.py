@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from protocol.scenario import RobotScenario
 from robot_agent.control.repulsion import keep_clear
 from robot_agent.hand import Own, top_acceleration
-from robot_agent.interfaces import Fresh, Plan, Point
+from robot_agent.interfaces import Controller, Fresh, Plan, Point
 from robot_agent.neighbours import Placed
 from robot_agent.sig import STEPS
 
 
-class CfpsoControl:
+class CfpsoControl(Controller):
     """(4.12), each robot for itself; the neighbours matter only to keep clear of them."""
 
     def __init__(self, scenario: RobotScenario) -> None:

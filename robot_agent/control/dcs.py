@@ -22,12 +22,12 @@ from msgspec.structs import replace
 from protocol.scenario import RobotScenario
 from robot_agent.control.repulsion import keep_clear
 from robot_agent.hand import Own, top_acceleration
-from robot_agent.interfaces import LOST, SEARCH, Fresh, Plan, Point
+from robot_agent.interfaces import LOST, SEARCH, Controller, Fresh, Plan, Point
 from robot_agent.neighbours import Placed
 from robot_agent.sig import STEPS
 
 
-class DcsControl:
+class DcsControl(Controller):
     """(5.5) while the group traces, (5.7) while it is lost."""
 
     def __init__(self, scenario: RobotScenario) -> None:

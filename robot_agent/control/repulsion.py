@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import hypot
 
-from protocol.scenario.sections import Repulsion
+from protocol.scenario.laws import Repulsion
 from robot_agent.hand import Own
 from robot_agent.interfaces import Point
 from robot_agent.neighbours import Placed

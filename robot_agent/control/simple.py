@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from protocol.scenario import RobotScenario
 from robot_agent.control.repulsion import anyone_within, gradient_force
 from robot_agent.hand import Own
-from robot_agent.interfaces import Fresh, Plan, Point
+from robot_agent.interfaces import Controller, Fresh, Plan, Point
 from robot_agent.neighbours import Placed
 from robot_agent.sig import STEPS
 
 
-class SimpleControl:
+class SimpleControl(Controller):
     """(3.34) with (3.35)."""
 
     def __init__(self, scenario: RobotScenario) -> None:

@@ -12,11 +12,11 @@ from protocol.scenario import RobotScenario
 from robot_agent import fusion, kalman
 from robot_agent.group import Group
 from robot_agent.hand import Own
-from robot_agent.interfaces import Fresh, Point
+from robot_agent.interfaces import Around, Decision, Fresh, Point
 from robot_agent.measurement import WindMemory, measure
 
 
-class DistributedDecision:
+class DistributedDecision(Decision):
     """One robot's part of the DDA."""
 
     def __init__(self, scenario: RobotScenario) -> None:
@@ -50,7 +50,7 @@ class DistributedDecision:
         if own.concentration > self._best_own[0]:
             self._best_own = (own.concentration, own.x, own.y)
 
-    def decide(self, own: Own, group: Group, detected: bool) -> None:
+    def decide(self, own: Own, group: Group, detected: bool, around: Around) -> None:
         d = self._s.decision
         z: Point | None = None
         if detected:

@@ -17,10 +17,10 @@ from math import hypot
 
 from protocol.scenario import RobotScenario
 from robot_agent.hand import Own
-from robot_agent.interfaces import LOST, TRACE, Plan, Point
+from robot_agent.interfaces import LOST, TRACE, Plan, Planner, Point
 
 
-class TracePlanner:
+class TracePlanner(Planner):
     """Plans along the plume, towards the decided source when the plume is lost."""
 
     def __init__(self, scenario: RobotScenario) -> None:

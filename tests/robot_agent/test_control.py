@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from protocol.messages import Reading, Shared
 from protocol.scenario import Scenario, robot_view
+from protocol.scenario.laws import Repulsion
 from protocol.scenario.load import load_scenario
-from protocol.scenario.sections import Repulsion
 from robot_agent.algorithms import ALGORITHMS
 from robot_agent.control.repulsion import gradient_force
 from robot_agent.hand import Own

@@ -11,12 +11,12 @@ from robot_agent.algorithms import ALGORITHMS, Algorithm
 from robot_agent.control.repulsion import keep_clear
 from robot_agent.decision.dda import DistributedDecision
 from robot_agent.hand import Own, top_acceleration
-from robot_agent.interfaces import SEARCH, Fresh, Plan, Point
+from robot_agent.interfaces import SEARCH, Controller, Fresh, Plan, Point
 from robot_agent.neighbours import Placed
 from robot_agent.planning.trace import TracePlanner
 
 
-class StraightControl:
+class StraightControl(Controller):
     """u_i = p_i - x_i - 2 v_i, and (3.35) to keep clear."""
 
     def __init__(self, scenario: RobotScenario) -> None:

@@ -1,0 +1,23 @@
+"""The laws of chapter 3."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from protocol.scenario.table import OpenFraction, Positive, Table
+
+
+class Simple(Table, frozen=True):
+    """The cooperative law (3.34) with (3.35), Table 3.2."""
+
+    a: OpenFraction = 0.5
+    delta: Positive = 0.2
+
+
+class Repulsion(Table, frozen=True):
+    """The potential (3.35), (3.36), Table 3.2."""
+
+    kappa: Positive = 0.5
+    d: Positive = 4.0  # m
+    d0: Positive = 6.6  # m
+    form: Literal["sum", "switch"] = "sum"  # added to (3.34), or instead of it within d0 as printed
