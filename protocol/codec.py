@@ -20,7 +20,7 @@ import msgspec
 
 from protocol import messages as m
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 1
 MAX_FRAME = 1 << 20  # bytes
 
 KINDS: tuple[type[m.Message], ...] = (
