@@ -67,6 +67,7 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     relayed: Annotated[tuple[RelayedState, ...], RECORDS] = ()  # states of others, passed on
     virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # a controller's own numbers, e.g. a virtual position
     notes: Annotated[tuple[Number, ...], RECORDS] = ()  # a decision's own numbers, e.g. what it remembers to have smelt
+    best_at: Number = NEVER  # when the highest concentration was met, s
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):

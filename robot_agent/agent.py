@@ -29,7 +29,7 @@ class Agent:
         self._planner = parts.planner(scenario)
         self._controller = parts.controller(scenario)
         self._search = CrosswindSearch(scenario)
-        self._group = Group()
+        self._group = Group(self._decision.recall)
         self._neighbours = Neighbours(scenario)
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
@@ -46,8 +46,9 @@ class Agent:
 
     @property
     def estimate(self) -> tuple[float, float] | None:
-        """The decided position of the source h^ic, m; None before the first detection in the group."""
-        return self._decision.h if self._begun else None
+        """The decided position of the source h^ic, m; None before the first detection in the group, and for an algorithm
+        that decides nothing."""
+        return self._decision.h if self._begun and self._decision.decides else None
 
     def sense(self, reading: Reading) -> Shared:
         """Take a reading; what to tell the neighbours at this tick."""
@@ -88,6 +89,7 @@ class Agent:
             self._neighbours.relay(own.tick),
             self._controller.virtual(),
             self._decision.notes(own) if self._begun else (),
+            group.best_at,
         )
 
     def act(self, heard: Iterable[Shared]) -> Drive:
@@ -104,7 +106,7 @@ class Agent:
         if group.started or self._begun:
             self._begin(own)
             if self.decision_due or self._plan is None:
-                self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others))
+                self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
             else:
@@ -127,7 +129,7 @@ class Agent:
             tick=own.tick,
             t=own.t,
             mode=plan.mode,
-            has_estimate=self._begun,
+            has_estimate=self.estimate is not None,
             h_x=decision.h[0],
             h_y=decision.h[1],
             x_hat_x=decision.estimate.x,

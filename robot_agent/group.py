@@ -8,17 +8,23 @@ late changes nothing; nobody is a centre.
 from __future__ import annotations
 
 from protocol.messages import NEVER, Shared
+from robot_agent.recall import Recall, Smell
 
 
 class Group:
     """Max-consensus memory of one robot."""
 
-    __slots__ = ("best", "best_x", "best_y", "detected_at", "first_detected_at", "heading", "leg", "leg_by")
+    __slots__ = ("_own", "_recall", "best", "best_at", "best_x", "best_y", "detected_at", "first_detected_at", "heading",
+                 "leg", "leg_by")  # fmt: skip
 
-    def __init__(self) -> None:
+    def __init__(self, recall: float = 0.0) -> None:
+        """`recall`: how long a concentration counts as the best one, s; 0: for ever."""
+        self._recall = recall
+        self._own = Recall(recall)
         self.first_detected_at = NEVER
         self.detected_at = NEVER
-        self.best = 0.0  # x_g of (2.3) and its concentration
+        self.best = 0.0  # x_g of (2.3), its concentration and time
+        self.best_at = NEVER
         self.best_x = 0.0
         self.best_y = 0.0
         self.leg = -1
@@ -39,7 +45,13 @@ class Group:
         if self.first_detected_at < 0.0:
             self.first_detected_at = t
         self.detected_at = max(self.detected_at, t)
-        self._offer_best(concentration, x, y)
+        smell = Smell(concentration, t, x, y)
+        self._own.add(smell)
+        self._offer_best(smell)
+
+    def own_best(self) -> Smell | None:
+        """x_l of (2.3): the best of this robot's own detections that count."""
+        return self._own.best(self.detected_at)
 
     def lead(self, leg: int, by: int, heading: tuple[float, float]) -> None:
         """Take a search heading if it is of a later leg, or of the same leg by a robot of lower number."""
@@ -54,11 +66,18 @@ class Group:
                 self.first_detected_at = first
             if heard.detected_at > self.detected_at:
                 self.detected_at = heard.detected_at
-            self._offer_best(heard.best_concentration, heard.best_x, heard.best_y)
+            self._offer_best(Smell(heard.best_concentration, heard.best_at, heard.best_x, heard.best_y))
         if heard.search_leg >= self.leg:
             self.lead(heard.search_leg, heard.search_by, (heard.search_x, heard.search_y))
 
-    def _offer_best(self, concentration: float, x: float, y: float) -> None:
-        # Ties are broken by place, so that all robots agree whatever order they heard in.
-        if (concentration, x, y) > (self.best, self.best_x, self.best_y) and concentration > 0.0:
-            self.best, self.best_x, self.best_y = concentration, x, y
+    def _offer_best(self, smell: Smell) -> None:
+        mine = Smell(self.best, self.best_at, self.best_x, self.best_y)
+        if self._is_old(self.best_at):
+            mine = self.own_best() or mine
+        # Ties are broken by time and place, so that all robots agree whatever order they heard in.
+        if not self._is_old(smell.at) and (self._is_old(mine.at) or smell > mine) and smell.concentration > 0.0:
+            mine = smell
+        self.best, self.best_at, self.best_x, self.best_y = mine
+
+    def _is_old(self, at: float) -> bool:
+        return self._recall > 0.0 and at < self.detected_at - self._recall

@@ -14,12 +14,13 @@ from protocol.scenario.sections import Body
 class Own:
     """What a robot knows of its own motion at one tick, in hand coordinates, and what it senses there."""
 
-    __slots__ = ("concentration", "nu", "omega", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
+    __slots__ = ("concentration", "lever", "nu", "omega", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
 
     def __init__(self, reading: Reading, body: Body) -> None:
         L = body.hand
         c, s = cos(reading.theta), sin(reading.theta)
         nu, omega = reading.nu, reading.omega
+        self.lever = 0.5 * body.axle / L  # what a sideways acceleration costs the wheels, compared with a forward one
         self.tick = reading.tick
         self.t = reading.t
         self.theta = reading.theta
@@ -54,6 +55,17 @@ def wheel_torques(ux: float, uy: float, own: Own, body: Body) -> tuple[float, fl
     scale = body.wheel_inertia / body.wheel_radius
     half = 0.5 * body.axle * turn
     return scale * (forward - half), scale * (forward + half)
+
+
+def within_reach(ux: float, uy: float, own: Own, top: float) -> tuple[float, float]:
+    """u_i shortened so that no wheel clips, m/s^2: wheels that clip, each for itself, change its direction.
+
+    By (1.10)-(1.12) the wheels ask for |forward| + axle/(2L) |sideways| <= `top`, the turning terms left out.
+    """
+    c, s = cos(own.theta), sin(own.theta)
+    asked = abs(c * ux + s * uy) + own.lever * abs(c * uy - s * ux)
+    scale = top / asked if asked > top else 1.0
+    return scale * ux, scale * uy
 
 
 def top_acceleration(body: Body) -> float:

@@ -28,6 +28,7 @@ class Around(NamedTuple):
 
     fresh: Fresh  # neighbours on the graph, with all that they say
     others: Sequence[Placed]  # everyone whose place is known, neighbours or not
+    numbers: Sequence[int] = ()  # their robot numbers, in the same order
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +49,16 @@ class Decision(Protocol):
     state: Point  # what travels to the neighbours as the fusion state
     h: Point
     estimate: Estimate
+    recall: float = 0.0  # how long the best concentration counts (`robot_agent.recall`), s; 0: for ever
+    decides: bool = True  # False: h is a place to drive to, nothing is said about the source
 
     def prefill(self, reading: Reading) -> None:
         """Take the wind that was recorded before the start."""
+        return
 
     def record(self, own: Own) -> None:
         """At every decision instant from the start on: remember what is sensed."""
+        return
 
     def begin(self, own: Own) -> None:
         """Someone has detected the odour for the first time (or the algorithm begins at once)."""
@@ -61,6 +66,7 @@ class Decision(Protocol):
 
     def detect(self, own: Own) -> None:
         """This robot detects the odour now."""
+        return
 
     def decide(self, own: Own, group: Group, detected: bool, around: Around) -> None:
         """At every decision instant after `begin`."""
@@ -68,7 +74,7 @@ class Decision(Protocol):
 
     def advance(self, fresh: Fresh, dt: float) -> None:
         """At every tick after `begin`: exchange with the neighbours."""
-        ...
+        return
 
     def notes(self, own: Own) -> tuple[float, ...]:
         """Own numbers to tell the neighbours at this tick (`Shared.notes`)."""

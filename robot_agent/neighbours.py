@@ -20,7 +20,7 @@ class Neighbours:
     """One robot's memory of the others."""
 
     __slots__ = ("_dt", "_latest", "_me", "_relay", "_relay_every", "_relay_ticks", "_relayed", "_stale_ticks",
-                 "_weights", "fresh")  # fmt: skip
+                 "_weights", "fresh", "numbers")  # fmt: skip
 
     def __init__(self, scenario: RobotScenario) -> None:
         control, timing = scenario.control, scenario.timing
@@ -34,6 +34,7 @@ class Neighbours:
         self._latest: dict[int, Shared] = {}
         self._relayed: dict[int, Relayed] = {}
         self.fresh: list[tuple[float, Shared]] = []  # (a_ij, state) of the neighbours that count at this tick
+        self.numbers: list[int] = []  # whose places `others` gave last, in its order
 
     def hear(self, tick: int, heard: Iterable[Shared]) -> None:
         """Take the states that arrived for tick `tick`."""
@@ -50,11 +51,13 @@ class Neighbours:
     def others(self, tick: int) -> list[Placed]:
         """Everyone whose place is known, neighbours and relayed robots, moved on to `tick` at their last velocity."""
         placed = [self._now(tick, s.tick, s.x, s.y, s.vx, s.vy) for _, s in self.fresh]
+        self.numbers = [s.robot for _, s in self.fresh]
         if self._relayed:
-            direct = {s.robot for _, s in self.fresh}
+            direct = set(self.numbers)
             for j, k, x, y, vx, vy in self._relayed.values():
                 if j not in direct and tick - k <= self._relay_ticks:
                     placed.append(self._now(tick, k, x, y, vx, vy))
+                    self.numbers.append(j)
         return placed
 
     def _now(self, tick: int, then: int, x: float, y: float, vx: float, vy: float) -> Placed:

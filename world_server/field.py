@@ -27,7 +27,9 @@ class Field:
         dt = scenario.wind.dt
         self._samples = math.floor(scenario.sensors.wind_history + 1e-9)  # of the wind, at 1 Hz
         # The wind blows for as long as either needs it; the source releases during the last `warm_up` seconds.
-        self._release_at = -_steps(scenario.plume.warm_up, dt)
+        # Without a source nothing has to be carried to where it is met.
+        warm_up = scenario.plume.warm_up if scenario.plume.release_rate > 0.0 else 0.0
+        self._release_at = -_steps(warm_up, dt)
         self._step = min(self._release_at, -_steps(self._samples, dt))  # 0 at t = 0
 
     def warm_up(self, points: Array) -> Array:

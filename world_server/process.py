@@ -82,7 +82,9 @@ class WorldProcess:
         world = World(self.scenario)
         session = WorldSession(world, send, halt, tell)
         self._gather(bus)
-        telemetry = Telemetry(world, truth, field) if self.recorder else None
+        # Whoever listens for the truth, the recorder or the launcher, is there by now.
+        watched = self.recorder or bus.matched(keys.TRUTH, ())
+        telemetry = Telemetry(world, truth, field) if watched else None
         start = time.perf_counter()
         try:
             self._run(bus, session, telemetry, progress)

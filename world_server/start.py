@@ -12,13 +12,13 @@ from protocol.scenario.scenario import robots_per_column
 def start_poses(scenario: Scenario) -> NDArray[np.float64]:
     """Centre poses (x, y, theta) of all robots, shape (N, 3), m and rad.
 
-    `start.positions` when given; otherwise a column from (start.x, start.y) upwards, `start.spacing` apart. The thesis
-    says "right-up corner" only; the column is a reading (docs/departures.md). More robots than the arena is high fill
-    further columns, away from the edge.
+    `start.positions` and `start.headings` when given; otherwise a column from (start.x, start.y) upwards,
+    `start.spacing` apart, all heading `start.heading`. The thesis says "right-up corner" only; the column is a reading
+    (docs/departures.md). More robots than the arena is high fill further columns, away from the edge.
     """
     start, n = scenario.start, scenario.robots
     poses = np.empty((n, 3))
-    poses[:, 2] = start.heading
+    poses[:, 2] = start.headings or start.heading
     if start.positions:
         poses[:, :2] = start.positions
         return poses

@@ -1,12 +1,14 @@
 """Who found the source, and how close the robots came to each other.
 
 Rules: judged along the ways of the hands, straight between substeps; an arrival is where the way enters the circle of
-`source.radius`, so its time does not hang on the tick or the substep. Once found, the finder stays.
+`source.radius`, so its time does not hang on the tick or the substep. Once found, the finder stays. With `source.stop` =
+"concentration" (chapter 2) it is not the place that counts but what the sensors meet, at the instants when they sample.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,7 +23,7 @@ Complex = NDArray[np.complex128]
 
 
 class Found(NamedTuple):
-    """The first arrival."""
+    """The first arrival, or the first sample of enough odour."""
 
     robot: int
     t: float  # s
@@ -30,15 +32,17 @@ class Found(NamedTuple):
 class Verdict:
     """What can be said of the run so far."""
 
-    def __init__(self, source: Source, hands: Array) -> None:
-        """Robots stand with their hands at `hands`, shape (N, 2), m, at t = 0."""
+    def __init__(self, source: Source | None, hands: Array) -> None:
+        """Robots stand with their hands at `hands`, shape (N, 2), m, at t = 0; without a source nobody ever arrives."""
         self.found: Found | None = None
-        self._source = complex(source.x, source.y)
-        self._radius = source.radius
+        self._source = complex(source.x, source.y) if source else 0j
+        self._radius = source.radius if source else 0.0
+        self._by_place = source is not None and source.stop == "circle"
+        self._ppt = source.stop_concentration if source and not self._by_place else math.inf
         self._first, self._second = np.triu_indices(len(hands), 1)  # all pairs of robots
         self._pair2 = math.inf
         # How far the hands may still go before a look is worth its time: nobody can arrive, no pair beat the record.
-        self._source_slack = 0.0
+        self._source_slack = 0.0 if self._by_place else math.inf
         self._pair_slack = 0.0
         here = [[complex(x, y)] for x, y in hands.tolist()]  # ways of one point each
         self.judge(Path(here, [0.0] * len(here), 0.0), 0.0)
@@ -58,6 +62,18 @@ class Verdict:
         self._pair_slack -= 2.0 * longest
         if self._pair_slack <= 0.0 and self._first.size:
             self._look_at_pairs(path.track, 2.0 * longest)
+
+    def smell(self, ppt: Sequence[float], t: float, live: Collection[int]) -> None:
+        """Take in what the sensors meet at time `t`, s; of two that meet enough at once the one with more finds.
+
+        Args:
+            ppt: concentration at every robot's hand, ppt.
+            live: the robots that still sense.
+        """
+        if self.found is None and max(ppt) >= self._ppt:
+            enough = [i for i in sorted(live) if ppt[i] >= self._ppt]
+            if enough:
+                self.found = Found(max(enough, key=lambda i: ppt[i]), t)
 
     def _look_at_source(self, path: Path, t0: float, longest: float) -> None:
         last = min(abs(row[-1] - self._source) for row in path.rows)

@@ -36,7 +36,7 @@ class World:
         hands = self.bodies.hands()
         self.field = Field(scenario)
         self._wind_past = self.field.warm_up(hands)
-        self.verdict = Verdict(scenario.source, hands)
+        self.verdict = Verdict(scenario.source if scenario.plume.release_rate > 0.0 else None, hands)
         self.first_detection: float | None = None
         self.first_detector = -1
         self.detections = 0
@@ -131,6 +131,7 @@ class World:
             u, v = self.field.wind.at(xs, ys)
             self._wind = (u.tolist(), v.tolist())
             self.concentration = self.field.plume.concentration(xs, ys).tolist()
+            self.verdict.smell(self.concentration, self.t, self.live)
             self._history += [*u, *v, *self.concentration]
             self._hash()
             self._digest.update(self.field.plume.snapshot().tobytes())

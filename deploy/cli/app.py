@@ -9,6 +9,7 @@ import typer
 from deploy.cli.reproduce import reproduce
 from deploy.cli.robot import robot
 from deploy.cli.run import run
+from deploy.cli.sweep import sweep
 from deploy.cli.topology import topology
 from deploy.cli.view import view
 from deploy.cli.world import world
@@ -20,7 +21,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, world, robot, topology, reproduce, view):
+for command in (run, world, robot, topology, sweep, reproduce, view):
     app.command()(command)
 
 

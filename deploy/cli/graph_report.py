@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import groupby
-from math import ceil, floor, log10
 from typing import Any
 
 from rich.console import Console
@@ -16,6 +15,7 @@ from rich.text import Text
 
 from deploy.cli.graph_picture import draw
 from protocol.topology.analysis import Analysis, Condition
+from protocol.topology.fit import rounded_up
 from protocol.topology.graph import Graph
 from protocol.topology.named import TOPOLOGIES
 
@@ -76,7 +76,7 @@ def _rows(analysis: Analysis, condition: Condition) -> Iterator[tuple[str, str, 
 def _verdict(analysis: Analysis, condition: Condition) -> str:
     """Whether (5.2) holds, and if not, what to do."""
     gains = f"γ = {condition.gamma:g}, β = {condition.beta:g}"
-    bound = _rounded_up(condition.bound)
+    bound = rounded_up(condition.bound)
     if not analysis.connected:
         return f"does not apply: the graph must be connected ({gains})"
     if analysis.directed:
@@ -104,12 +104,6 @@ def _eigenvalues(analysis: Analysis) -> str:
     if len(words) > MOST_EIGENVALUES:
         words[MOST_EIGENVALUES - 2 : -1] = ["..."]
     return ", ".join(words)
-
-
-def _rounded_up(bound: float) -> str:
-    """Four digits, so rounded that a gain greater than what is printed is great enough."""
-    digits = 3 - floor(log10(bound)) if bound > 0 else 0
-    return f"{ceil(bound * 10**digits - 1e-9) / 10**digits:.4g}"
 
 
 def _number(value: complex) -> str:

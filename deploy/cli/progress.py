@@ -17,6 +17,7 @@ class Display:
 
     def __init__(self, scenario: Scenario, *, quiet: bool) -> None:
         self._scenario = scenario
+        self._source = scenario.plume.release_rate > 0.0
         self._console = Console(stderr=True, quiet=quiet, highlight=False)
         self._live: Live | None = None
         if not quiet and self._console.is_terminal:
@@ -53,6 +54,6 @@ class Display:
             return Text("the swarm links up ...", style="dim")
         return Text.assemble(
             (f"{p.t:8.1f} s  ", "bold"),
-            f"{p.live}/{self._scenario.robots} robots, {p.detections} detections, ",
-            f"the nearest {p.closest:.1f} m from the source",
+            f"{p.live}/{self._scenario.robots} robots",
+            f", {p.detections} detections, the nearest {p.closest:.1f} m from the source" if self._source else "",
         )

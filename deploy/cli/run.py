@@ -11,6 +11,7 @@ from typing import Annotated, NoReturn
 import typer
 from typer import Argument, Option
 
+from deploy.cli.advice import advice
 from deploy.cli.options import INTERRUPTED, complain, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
@@ -48,6 +49,8 @@ def run(
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
+    for sentence in advice(scenario):
+        complain(f"warning: {sentence}")
     signal.signal(signal.SIGTERM, _terminate)
     name = f"run-{secrets.token_hex(4)}"
     try:

@@ -34,10 +34,16 @@ def print_verdict(outcome: Outcome, scenario: Scenario, record: Path | None) -> 
 def _headline(outcome: Outcome, scenario: Scenario) -> Text:
     if outcome.found:
         where = f"({scenario.source.x:g}, {scenario.source.y:g})"
-        text = f"Found: robot {outcome.finder} reached the source at {where} after {outcome.time:.1f} s."
+        if scenario.source.stop == "concentration":
+            met = f"met {scenario.source.stop_concentration:g} ppt"
+            text = f"Found: robot {outcome.finder} {met} after {outcome.time:.1f} s; the source is at {where}."
+        else:
+            text = f"Found: robot {outcome.finder} reached the source at {where} after {outcome.time:.1f} s."
         return Text(text, "bold green")
     if outcome.failed:
         return Text(f"Failed after {outcome.time:.1f} s: {outcome.ended}.", "bold red")
+    if scenario.plume.release_rate == 0.0:
+        return Text(f"Ended after {outcome.time:.1f} s; there was no source to find.", "bold green")
     if outcome.first_detection is None:
         return Text(f"Not found within {outcome.time:.1f} s: no robot met the odour.", "bold yellow")
     text = f"Not found within {outcome.time:.1f} s; the odour was first met at {outcome.first_detection:.1f} s."

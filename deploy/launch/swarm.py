@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
-from protocol.messages import Event, Outcome, Progress
+from protocol.messages import Event, Outcome, Progress, Truth
 from protocol.scenario import Scenario
 from protocol.scenario.place import place_of
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -40,6 +41,7 @@ class SwarmRun:
     scenario: Scenario
     record: Path | None = None
     view: bool = False
+    truth: Callable[[Truth], None] | None = None  # told of the robots as they are, as often as `recording` says; best effort
     children: Children | None = None  # while and after it runs
 
     def execute(self, watcher: Watcher) -> Outcome:
@@ -90,6 +92,8 @@ class SwarmRun:
             bus.subscribe(keys.PROGRESS, Progress)
             bus.subscribe(keys.EVENTS, Event)
             bus.subscribe(keys.OUTCOME, Outcome)
+            if self.truth is not None:
+                bus.subscribe(keys.TRUTH, Truth)
             try:
                 outcome = self._watch(bus, children, watcher)
             except KeyboardInterrupt:
@@ -120,6 +124,8 @@ class SwarmRun:
                     watcher.progress(message)
                 elif isinstance(message, Event):
                     watcher.event(message)
+                elif isinstance(message, Truth) and self.truth is not None:
+                    self.truth(message)
             elif event is None or isinstance(event, Lost):
                 self._look_after(children, begun)
 

@@ -9,10 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from deploy.reproduce import chapter3, chapter4, chapter5, chapter6, finite_time
 from deploy.reproduce.kinds import Reproduction
 from protocol.errors import ScenarioError
 
-FAMILIES: tuple[Sequence[Reproduction], ...] = ()
+FAMILIES: tuple[Sequence[Reproduction], ...] = (
+    chapter3.REPRODUCTIONS,
+    chapter4.REPRODUCTIONS,
+    finite_time.REPRODUCTIONS,
+    chapter6.REPRODUCTIONS,
+    chapter5.REPRODUCTIONS,
+)
 
 ALL: dict[str, Reproduction] = {each.name: each for family in FAMILIES for each in family}
 

@@ -49,6 +49,10 @@ def _source(scenario: Scenario) -> Iterator[Fault]:
 
 def _start(scenario: Scenario) -> Iterator[Fault]:
     points, n = scenario.start.positions, scenario.robots
+    headings = len(scenario.start.headings)
+    if headings not in (0, n):
+        paths = ("start.headings", "robots")
+        yield f"start.headings has {_count(headings, 'angle')}; it must be empty or have one per robot, {n}.", paths
     if not points:
         yield from _column(scenario)
         return
@@ -108,6 +112,15 @@ def _timing(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
+def _drill(scenario: Scenario) -> Iterator[Fault]:
+    radii, n = len(scenario.drill.radii), scenario.robots
+    if radii not in (1, n):
+        yield (
+            f"drill.radii has {_count(radii, 'number')}; it must have one for all robots, or one per robot, {n}.",
+            ("drill.radii", "robots"),
+        )
+
+
 def _network(scenario: Scenario) -> Iterator[Fault]:
     given, wanted = len(scenario.network.endpoints), scenario.robots + 1
     if given not in (0, wanted):
@@ -124,7 +137,7 @@ def _graph(scenario: Scenario) -> Iterator[Fault]:
         yield f"graph: {fault}.", ("graph", "robots")
 
 
-CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (_arena, _source, _start, _timing, _network, _graph)
+CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (_arena, _source, _start, _timing, _drill, _network, _graph)
 
 
 def _inside(scenario: Scenario, x: float, y: float) -> bool:

@@ -30,7 +30,9 @@ from protocol.scenario.schema import one_of, show
 from protocol.scenario.settings import Setting, named, near, parse_setting, read_settings
 from protocol.scenario.toml_file import read_toml
 
-__all__ = ["Override", "load_scenario", "parse_setting"]
+__all__ = ["Override", "from_layers", "load_scenario", "parse_setting"]
+
+_NO_FOLDERS: Mapping[str, Path] = {}
 
 Override = tuple[str, object, str]  # (dotted name, value, where it was given: "--set wind.gain", "--robots")
 
@@ -48,14 +50,30 @@ def load_scenario(
     """
     layers = [tuple(read_settings((), read_toml(file), str(file)))] if file is not None else []
     layers.append(tuple(s for path, value, origin in overrides for s in _read_flag(path, value, origin)))
+    folders = {str(file): file.parent} if file is not None else {}
+    return from_layers(layers, algorithms=algorithms, folders=folders)
+
+
+def from_layers(
+    layers: Sequence[Sequence[Setting]],
+    *,
+    algorithms: Collection[str] = (),
+    folders: Mapping[str, Path] = _NO_FOLDERS,
+) -> Scenario:
+    """The complete scenario of `layers`, each over the one before.
+
+    Args:
+        algorithms: as in `load_scenario`.
+        folders: where the path of a graph file starts from, by the origin of `topology`; elsewhere: the working directory.
+    Raises: ScenarioError.
+    """
     settings = merge(layers)
     scenario = build(settings.values())
     origins = {path: setting.origin for path, setting in settings.items()}
     if algorithms and scenario.algorithm not in algorithms:
         raise ScenarioError(_no_algorithm(scenario.algorithm, origins.get("algorithm", ""), sorted(algorithms)))
     if "graph" not in settings:
-        in_file = file is not None and origins.get("topology") == str(file)
-        base_dir = file.parent if file is not None and in_file else Path()
+        base_dir = folders.get(origins.get("topology", ""), Path())
         scenario = resolve(scenario, base_dir, robots_given="robots" in settings, origins=origins)
     return check(scenario, origins)
 

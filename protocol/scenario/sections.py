@@ -30,6 +30,8 @@ class Source(Table, frozen=True):
     x: Real = 10.0  # x_s, m (Table 4.6)
     y: Real = 0.0
     radius: Positive = 1.0  # found when a robot's hand is this close, m
+    stop: Literal["circle", "concentration"] = "circle"  # what counts as found; chapter 2: a concentration
+    stop_concentration: Positive = 19515.0  # found when a robot senses as much, ppt (section 2.4.1)
 
 
 class Wind(Table, frozen=True):
@@ -48,7 +50,7 @@ class Wind(Table, frozen=True):
 class Plume(Table, frozen=True):
     """The filaments (1.1), (1.4), (1.5)."""
 
-    release_rate: Annotated[float, Meta(ge=0, le=1000)] = 10.0  # filaments/s, Poisson
+    release_rate: Annotated[float, Meta(ge=0, le=1000)] = 10.0  # filaments/s, Poisson; 0: there is no source to find
     radius: Positive = 0.5  # R(0), m
     growth: Literal["farrell1", "printed", "farrell2"] = "farrell1"
     growth_rate: NonNegative = 0.001  # gamma (Table 1.1)
@@ -92,6 +94,7 @@ class Start(Table, frozen=True):
     spacing: Annotated[float, Meta(ge=0.4, le=50)] = 3.0  # m
     heading: Real = 1.5707963267948966  # rad
     positions: tuple[Point, ...] = ()  # instead of the column, one point per robot
+    headings: tuple[Real, ...] = ()  # instead of `heading`, one per robot, rad
 
 
 class Timing(Table, frozen=True):
@@ -123,6 +126,7 @@ class Decision(Table, frozen=True):
     sigma2: Positive = 2.1  # sigma^2, m^2 (Example 1)
     initial_variance: Positive = 1000.0  # P(0), m^2 (Example 1)
     process_noise: NonNegative = 20.0  # q per decision, m^2; 0 in the thesis
+    recall: NonNegative = 20.0  # x_l, x_g (2.3) are the best of the latest so many seconds; 0: of all, as printed
     c1: Fraction = 0.8  # weight of the wind estimate in (3.31), Table 3.1; c_2 = 1 - c_1
     lost_after: Positive = 20.0  # no detection in the group for this long: lost, s
 
@@ -143,6 +147,7 @@ class Planning(Table, frozen=True):
     slope_limit: NonNegative = 1.0  # bound on |w_y / w_x|; 0: none
     slope: Literal["magnitude", "printed"] = "magnitude"  # |w_y| / |w_x|, or |w_y| / w_x as printed
     speed: Positive = 0.8  # |v_c|, m/s
+    passed: Literal["upwind", "back"] = "upwind"  # where v_c points when the robot is upwind of its target already
 
 
 class Control(Table, frozen=True):

@@ -15,11 +15,12 @@ added when somebody is within `dcs.clearance` (`dcs.repulsion`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, pi, sin
+from math import pi
 
 from msgspec.structs import replace
 
 from protocol.scenario import RobotScenario
+from robot_agent.control.consensus_laws import circular, formation, orbit, parallel, relative, respond
 from robot_agent.control.repulsion import keep_clear
 from robot_agent.hand import Own, top_acceleration
 from robot_agent.interfaces import LOST, SEARCH, Controller, Fresh, Plan, Point
@@ -39,10 +40,7 @@ class DcsControl(Controller):
         self._top = top_acceleration(scenario.body)
         sectors = p.sectors or scenario.robots
         # h_i of Table 5.3; robots are numbered from 1 in the thesis.
-        self._h = [
-            (p.radius * cos(2 * pi * i / sectors + pi / 6), p.radius * sin(2 * pi * i / sectors + pi / 6))
-            for i in range(1, scenario.robots + 1)
-        ]
+        self._h = formation(p.radius, sectors, scenario.robots)
         self._K = 2.0 * scenario.max_degree * p.gamma
         self._step = STEPS[scenario.control.step]
 
@@ -53,39 +51,23 @@ class DcsControl(Controller):
 
     def _parallel(self, own: Own, fresh: Fresh, plan: Plan, dt: float) -> Point:
         p = self._p
-        beta, gamma, lam = p.beta, p.gamma, p.lam
-        h_x, h_y = self._h[self._me]
-        x, y = own.x - h_x, own.y - h_y
-        phi_x = lam * (plan.v_c[0] - own.vx)
-        phi_y = lam * (plan.v_c[1] - own.vy)
-        for a_ij, s in fresh:
-            h_jx, h_jy = self._h[s.robot]
-            phi_x += a_ij * (beta * (s.x - h_jx - x) + gamma * (s.vx - own.vx))
-            phi_y += a_ij * (beta * (s.y - h_jy - y) + gamma * (s.vy - own.vy))
-        dt_k = dt * (self._K + lam)
-        return self._step(phi_x, 1.0, 1.0, p.alpha, dt_k), self._step(phi_y, 1.0, 1.0, p.alpha, dt_k)
+        here = relative(own, self._h[self._me])
+        heard = [(a_ij, relative(s, self._h[s.robot])) for a_ij, s in fresh]
+        phi = parallel(here, heard, plan.v_c, p.beta, p.gamma, p.lam)
+        return respond(phi, p.alpha, self._step, dt * (self._K + p.lam))
 
     def _circle(self, own: Own, fresh: Fresh, plan: Plan, dt: float) -> Point:
         p = self._p
-        beta, gamma = p.beta, p.gamma
-        h_x, h_y, hd_x, hd_y = self._orbit(self._me, own.t)
-        x, y, vx, vy = own.x - h_x, own.y - h_y, own.vx - hd_x, own.vy - hd_y
-        phi_x = p.lam2 * (plan.centre[0] - x) - p.lam1 * vx
-        phi_y = p.lam2 * (plan.centre[1] - y) - p.lam1 * vy
-        for a_ij, s in fresh:
-            h_jx, h_jy, hd_jx, hd_jy = self._orbit(s.robot, own.t)
-            phi_x += a_ij * (beta * (s.x - h_jx - x) + gamma * (s.vx - hd_jx - vx))
-            phi_y += a_ij * (beta * (s.y - h_jy - y) + gamma * (s.vy - hd_jy - vy))
-        dt_k = dt * (self._K + p.lam1)
+        h, h_dot = self._orbit(self._me, own.t)
+        heard = [(a_ij, relative(s, *self._orbit(s.robot, own.t))) for a_ij, s in fresh]
+        phi = circular(relative(own, h, h_dot), heard, plan.centre, p.beta, p.gamma, p.lam1, p.lam2)
+        u_x, u_y = respond(phi, p.alpha, self._step, dt * (self._K + p.lam1))
         w2 = p.turn**2
-        return (
-            self._step(phi_x, 1.0, 1.0, p.alpha, dt_k) - w2 * h_x,
-            self._step(phi_y, 1.0, 1.0, p.alpha, dt_k) - w2 * h_y,
-        )
+        return u_x - w2 * h[0], u_y - w2 * h[1]
 
-    def _orbit(self, i: int, t: float) -> tuple[float, float, float, float]:
+    def _orbit(self, i: int, t: float) -> tuple[Point, Point]:
         """h_i and h_i' of (5.6) at time t."""
         p = self._p
-        theta = 2.0 * pi * (i + 1) / self._robots + p.turn * t
-        h_x, h_y = p.circle * cos(theta), p.circle * sin(theta)
-        return h_x, h_y, -p.turn * h_y, p.turn * h_x
+        share = (i + 1) / self._robots
+        radius = p.circle * share if p.orbits == "spread" else p.circle
+        return orbit(radius, p.turn, 2.0 * pi * share + p.turn * t)

@@ -22,7 +22,7 @@ class DistributedDecision(Decision):
     def __init__(self, scenario: RobotScenario) -> None:
         self._s = scenario
         self._winds = WindMemory(scenario.decision.memory)
-        self._best_own = (0.0, 0.0, 0.0)  # concentration and x_l of (2.3)
+        self.recall = scenario.decision.recall
         self._input: Point | None = None
         self._R = scenario.decision.sigma2
         self._k = 0  # decisions since the start of the mission
@@ -46,10 +46,6 @@ class DistributedDecision(Decision):
         self.state = self.h = (own.x, own.y)
         self.estimate = kalman.Estimate(own.x, own.y, self._s.decision.initial_variance)
 
-    def detect(self, own: Own) -> None:
-        if own.concentration > self._best_own[0]:
-            self._best_own = (own.concentration, own.x, own.y)
-
     def decide(self, own: Own, group: Group, detected: bool, around: Around) -> None:
         d = self._s.decision
         z: Point | None = None
@@ -71,11 +67,11 @@ class DistributedDecision(Decision):
     def _oscillation_centre(self, group: Group) -> Point:
         """p_hat_i = (alpha_1 x_l + alpha_2 x_g) / (alpha_1 + alpha_2), (2.4); x_g alone before an own detection."""
         x_g = (group.best_x, group.best_y)
-        if self._best_own[0] <= 0.0:
+        x_l = group.own_best()
+        if x_l is None:
             return x_g
         draws = rng_for(self._s.seed, "pso", self._s.robot, self._k)
         alpha1 = draws.uniform()
         alpha2 = 1.0 - draws.uniform()  # in (0, 1]: the sum is never 0
-        _, x, y = self._best_own
         total = alpha1 + alpha2
-        return (alpha1 * x + alpha2 * x_g[0]) / total, (alpha1 * y + alpha2 * x_g[1]) / total
+        return (alpha1 * x_l.x + alpha2 * x_g[0]) / total, (alpha1 * x_l.y + alpha2 * x_g[1]) / total

@@ -37,7 +37,14 @@ class TracePlanner(Planner):
         p_ddot = ((p_dot[0] - self._p_dot[0]) / self._dt, (p_dot[1] - self._p_dot[1]) / self._dt)
         self._last, self._p_dot = target, p_dot
         v_c = scaled(target[0] - own.x, target[1] - own.y, self._planning.speed)
+        if not lost and self._planning.passed == "upwind" and self._has_passed(own, target):
+            v_c = scaled(-own.wind_x, -own.wind_y, self._planning.speed)
         return Plan(LOST if lost else TRACE, target, p_dot, p_ddot, v_c, centre=h)
+
+    @staticmethod
+    def _has_passed(own: Own, target: Point) -> bool:
+        """Whether the robot is upwind of its target."""
+        return (own.x - target[0]) * own.wind_x + (own.y - target[1]) * own.wind_y < 0.0
 
     def _downwind(self, own: Own, h: Point) -> Point:
         w_x, w_y = own.wind_x, own.wind_y

@@ -40,7 +40,11 @@ def another(path: str) -> Any:
     return {
         "graph": ((0, 1, 1.0),),
         "start.positions": ((1.0, 2.0),),
+        "start.headings": (1.0,),
         "search.target": (1.0, 2.0),
+        "drill.velocity": (1.0, 2.0),
+        "drill.centre": (1.0, 2.0),
+        "drill.radii": (1.0, 2.0),
         "network.endpoints": ("tcp/127.0.0.1:7447",),
     }[path]
 
@@ -159,7 +163,11 @@ def value_of(path: str) -> st.SearchStrategy[Any]:
     return {
         "graph": st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), numbers), max_size=3).map(tuple),
         "start.positions": st.lists(st.tuples(numbers, numbers), max_size=3).map(tuple),
+        "start.headings": st.lists(numbers, max_size=3).map(tuple),
         "search.target": st.tuples(numbers, numbers),
+        "drill.velocity": st.tuples(numbers, numbers),
+        "drill.centre": st.tuples(numbers, numbers),
+        "drill.radii": st.lists(st.floats(0, 1e9, exclude_min=True), max_size=3).map(tuple),
         "network.endpoints": st.lists(st.text(st.characters(exclude_categories=["Cs"]))).map(tuple),
     }[path]
 

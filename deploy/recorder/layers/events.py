@@ -51,6 +51,12 @@ def document(run: str, scenario: Scenario, outcome: Outcome | None) -> Iterator[
     )
 
 
+def _found_when(s: Scenario) -> str:
+    if s.source.stop == "concentration":
+        return f"when a robot meets {s.source.stop_concentration:g} ppt"
+    return f"within {s.source.radius:g} m"
+
+
 def describe(run: str, scenario: Scenario, outcome: Outcome | None) -> str:
     """The same in Markdown."""
     s = scenario
@@ -58,7 +64,7 @@ def describe(run: str, scenario: Scenario, outcome: Outcome | None) -> str:
         ("algorithm", s.algorithm),
         ("robots", f"{s.robots}"),
         ("graph", f"{s.topology}, {len(s.graph)} directed edges"),
-        ("source", f"({s.source.x:g}, {s.source.y:g}) m, found within {s.source.radius:g} m"),
+        ("source", f"({s.source.x:g}, {s.source.y:g}) m, found {_found_when(s)}"),
         ("wind", f"{s.wind.speed:g} m/s"),
         ("threshold", f"{s.decision.threshold:g} ppt"),
         ("tick, decision", f"{s.timing.tick:g} s, {s.timing.decision:g} s"),

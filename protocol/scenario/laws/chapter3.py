@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from protocol.scenario.table import OpenFraction, Positive, Table
+from protocol.scenario.table import NonNegative, OpenFraction, Positive, Table
 
 
 class Simple(Table, frozen=True):
@@ -20,4 +20,5 @@ class Repulsion(Table, frozen=True):
     kappa: Positive = 0.5
     d: Positive = 4.0  # m
     d0: Positive = 6.6  # m
+    gap: NonNegative = 0.8  # robots that come fast brake to stop so far apart, m; 0: (3.35) alone
     form: Literal["sum", "switch"] = "sum"  # added to (3.34), or instead of it within d0 as printed

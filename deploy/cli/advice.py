@@ -1,0 +1,35 @@
+"""What a person ought to know before a run begins, although nothing in it is an error.
+
+Rules: each piece of advice is one or two sentences for stderr; a run that is as it should be gets none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from protocol.scenario import Scenario
+from protocol.scenario.schema import get_value
+from robot_agent.algorithms import ALGORITHMS
+
+
+def advice(scenario: Scenario) -> Iterator[str]:
+    """Sentences about `scenario`, which is complete and checked."""
+    parts = ALGORITHMS[scenario.algorithm]
+    if parts.gains:
+        yield from _gains(scenario, parts.gains)
+    if parts.drill and scenario.plume.release_rate > 0:
+        yield (
+            f'"{scenario.algorithm}" is an exercise that ignores the odour, and there is a source: the run ends when a robot'
+            " comes upon it. --set plume.release_rate=0 leaves it out."
+        )
+
+
+def _gains(scenario: Scenario, table: str) -> Iterator[str]:
+    from protocol.topology.analysis import analyse
+    from protocol.topology.fit import fit_warning
+    from protocol.topology.graph import Graph
+
+    beta, gamma = (float(str(get_value(scenario, f"{table}.{name}"))) for name in ("beta", "gamma"))
+    sentence = fit_warning(analyse(Graph(scenario.robots, scenario.graph)), beta, gamma, table)
+    if sentence is not None:
+        yield f"{scenario.algorithm} on {scenario.topology}, {scenario.robots} robots: {sentence}"

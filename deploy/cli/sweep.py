@@ -1,0 +1,122 @@
+"""`odourswarm sweep`: a grid of runs in memory on all cores, resumable, and what came out of it."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+from typer import Argument, Option
+
+from deploy.cli.options import INTERRUPTED, complain
+from protocol.errors import ScenarioError, SwarmFailure
+from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED
+
+if TYPE_CHECKING:
+    from deploy.sweep.plan import Plan
+
+
+def sweep(
+    spec: Annotated[
+        str | None, Argument(metavar="[SPEC.toml]", help="A sweep's file, or a study by name; none: the list of studies.")
+    ] = None,
+    jobs: Annotated[int | None, Option("--jobs", "-j", min=1, help="Worker processes; as many as processors.")] = None,
+    out: Annotated[
+        Path | None, Option("--out", metavar="FILE", help="The result; results/NAME.parquet when it is not given.")
+    ] = None,
+    summary: Annotated[bool, Option("--summary", help="Only say what came out; SPEC may be a result, too.")] = False,
+    fresh: Annotated[bool, Option("--fresh", help="Forget the runs that are finished, and run all again.")] = False,
+    form: Annotated[str, Option("--format", help="Of the summary: table, csv, markdown.")] = "table",
+    json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else there.")] = False,
+) -> None:
+    """Run a grid of scenarios; what is finished is kept, and the same command goes on where it was stopped."""
+    from deploy.cli.sweep_print import print_studies
+
+    try:
+        _check(spec, form, summary=summary)
+        if spec is None:
+            print_studies(json=json)
+        elif summary:
+            _summary(spec, out, form, json=json)
+        else:
+            _sweep(spec, out, jobs, form, fresh=fresh, json=json)
+    except ScenarioError as error:
+        complain(error)
+        raise typer.Exit(EXIT_BAD_INPUT) from None
+    except SwarmFailure as error:
+        complain(error)
+        raise typer.Exit(EXIT_FAILED) from None
+    except OSError as error:
+        complain(f"{error.filename or out}: {(error.strerror or str(error)).lower()}; what was finished is kept.")
+        raise typer.Exit(EXIT_FAILED) from None
+
+
+def _sweep(spec: str, out: Path | None, jobs: int | None, form: str, *, fresh: bool, json: bool) -> None:
+    from deploy.cli.sweep_print import print_report, print_summary
+    from deploy.cli.sweep_progress import SweepDisplay
+    from deploy.sweep.execute import default_jobs, execute
+
+    plan, file = _plan(spec, out)
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        with SweepDisplay(plan.spec.name) as display:
+            report = execute(plan, file, jobs or default_jobs(), display, fresh=fresh)
+    except KeyboardInterrupt:
+        complain(f"interrupted; {file} has what was finished, the same command goes on from there.")
+        raise typer.Exit(INTERRUPTED) from None
+    if json:
+        print_report(report, plan)
+    elif report.rows:
+        print_summary(report.rows, plan.varied, form)
+    complain(f"{file} has {len(report.rows)} of {report.runs} runs.")
+    if report.failed:
+        complain(f"{len(report.failed)} runs failed; the same command tries them again.")
+        raise typer.Exit(EXIT_FAILED)
+
+
+def _summary(spec: str, out: Path | None, form: str, *, json: bool) -> None:
+    from deploy.cli.sweep_print import print_cells, print_summary
+    from deploy.sweep.rows import relabel
+    from deploy.sweep.store import finished, grid_of
+
+    missing = None
+    if spec.endswith(".parquet"):
+        file = Path(spec)
+        rows = list(finished(file).values())
+        varied = grid_of(file, rows)
+    else:
+        plan, file = _plan(spec, out)
+        found = finished(file, aside=True)
+        rows = [relabel(job, found[job.digest]) for job in plan.jobs if job.digest in found]
+        varied, missing = plan.varied, len(plan.jobs) - len(rows)
+    if not rows:
+        raise ScenarioError(f"{file}: there are no finished runs; `odourswarm sweep SPEC.toml` makes them.")
+    if json:
+        print_cells(str(file), rows, varied, missing)
+        return
+    print_summary(rows, varied, form)
+    if missing:
+        complain(f"{missing} runs are missing; `odourswarm sweep {spec}` makes them.")
+
+
+def _plan(spec: str, out: Path | None) -> tuple[Plan, Path]:
+    from deploy.sweep.plan import make_plan
+    from deploy.sweep.studies import find_spec
+
+    plan = make_plan(find_spec(spec))
+    return plan, out or Path("results") / f"{plan.spec.name}.parquet"
+
+
+def _check(spec: str | None, form: str, *, summary: bool) -> None:
+    from deploy.sweep.tables import FORMATS
+
+    if form not in FORMATS:
+        raise ScenarioError(f'--format is "{form}"; it must be table, csv or markdown.')
+    if spec is None and summary:
+        raise ScenarioError("--summary: give the result of a sweep, its spec, or a study by name.")
+
+
+def _terminate(signum: int, frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
