@@ -97,9 +97,9 @@ def coulomb(x: Point, charged: Iterable[Point], charge: float, core: float, reac
         dx, dy = x[0] - ox, x[1] - oy
         r = hypot(dx, dy)
         if 0.0 < r <= reach:
-            size = q2 / (max(r, core) ** 2 * r)
-            ax += size * dx
-            ay += size * dy
+            size = q2 / max(r, core) ** 2
+            ax += size * (dx / r)
+            ay += size * (dy / r)
     return ax, ay
 
 

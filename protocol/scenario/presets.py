@@ -34,6 +34,9 @@ LITERAL: dict[str, object] = {
     "ftmcs.leash": 0.0,
     "ftmcs.limited": False,
     "ftmcs.repulsion": False,
+    "pso.recall": 0.0,
+    "pso.draws": "scalar",
+    "cpso.draws": "scalar",
     "search.after": "stay",
 }
 

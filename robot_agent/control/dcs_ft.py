@@ -98,4 +98,6 @@ class DcsFtControl(Controller):
     def _place(self, i: int, t: float) -> tuple[Point, Point]:
         """h_i and h_i' of (5.6) at time t."""
         p = self._p
-        return orbit(p.circle, p.turn, 2.0 * pi * (i + 1) / self._robots + p.turn * t)
+        share = (i + 1) / self._robots
+        radius = p.circle * share if p.orbits == "spread" else p.circle
+        return orbit(radius, p.turn, 2.0 * pi * share + p.turn * t)

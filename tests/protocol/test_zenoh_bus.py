@@ -192,7 +192,8 @@ def test_a_stranger_is_seen_as_a_link_and_its_frames_are_refused(
     with caplog.at_level(logging.WARNING, logger="protocol.zenoh_bus"):
         for tick in range(5):
             lie(drive(tick))
-        until(lambda: a._inbox._size() >= 5, "the lies are there")
+        # Counted where they are opened: the queue also holds who has come and gone.
+        until(lambda: a.receive(0) is None and a.counters.refused == 5, "the lies are refused")
         say(drive(7))
         assert drives(await_event(a, lambda e: isinstance(e, Delivery))) == [("robot/3/drive", 7)]
     assert a.counters.refused == 5
@@ -227,7 +228,7 @@ def test_malformed_frames_are_counted_and_hurt_nobody(
             raw.put(frame)
         raw.delete()
         b._session.put(f"odour/{RUN}/robot/2/report", b"secret")
-        until(lambda: a._inbox._size() >= len(rubbish) + 2, "the rubbish is there")
+        until(lambda: a.receive(0) is None and a.counters.refused == len(rubbish) + 2, "the rubbish is refused")
         say(drive(5))
         heard = await_event(a, lambda e: isinstance(e, Delivery))
     assert drives(heard) == [("robot/2/drive", 5)]

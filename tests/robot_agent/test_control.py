@@ -108,15 +108,16 @@ def test_parallel_motion_of_dcs_reaches_the_formation_and_the_reference_velocity
     assert np.abs(group.vs - V_C).max() < 0.02
 
 
-def test_circular_motion_of_dcs_turns_about_the_decided_source():
-    """Corollary 3: x_i - h_i -> h^c and v_i -> h_i', at the radius and the rate of Table 5.4."""
-    s = scenario("dcs", topology="ring", dcs__repulsion=False)
+@pytest.mark.parametrize(("orbits", "shares"), [("one", [1.0] * 5), ("spread", [0.2, 0.4, 0.6, 0.8, 1.0])])
+def test_circular_motion_of_dcs_turns_about_the_decided_source(orbits, shares):
+    """Corollary 3: x_i - h_i -> h^c and v_i -> h_i', at the rate of Table 5.4 and its radius, or at shares of it."""
+    s = scenario("dcs", topology="ring", dcs__repulsion=False, dcs__orbits=orbits)
     group = Group(s, SPREAD, np.zeros((5, 2)))
     plan = Plan(LOST, (20.0, 10.0), centre=(20.0, 10.0))
     group.run(plan, seconds=120.0)
     offset = group.xs - (20.0, 10.0)
-    assert np.hypot(*offset.T) == pytest.approx([s.dcs.circle] * 5, rel=0.02)
-    assert np.hypot(*group.vs.T) == pytest.approx([s.dcs.circle * s.dcs.turn] * 5, rel=0.02)
+    assert np.hypot(*offset.T) == pytest.approx([s.dcs.circle * share for share in shares], rel=0.02)
+    assert np.hypot(*group.vs.T) == pytest.approx([s.dcs.circle * s.dcs.turn * share for share in shares], rel=0.02)
     assert s.dcs.circle * s.dcs.turn < s.body.max_speed
 
 

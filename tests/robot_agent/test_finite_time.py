@@ -267,8 +267,10 @@ V_C = (0.5, -0.3)
 @pytest.mark.parametrize("topology", ["ring", "line"])
 def test_parallel_motion_takes_the_formation_and_the_reference_velocity_to_round_off(topology):
     group = Group(scenario("dcs-ft", topology=topology), SPREAD, np.zeros((5, 2)))
-    group.run(Plan(TRACE, (0.0, 0.0), v_c=V_C), seconds=110.0)
-    formation = group.xs - np.array(group.laws[0]._h)
+    places = np.array(group.laws[0]._h)
+    group.xs = places + 0.25 * np.array(SPREAD)
+    group.run(Plan(TRACE, (0.0, 0.0), v_c=V_C), seconds=60.0)
+    formation = group.xs - places
     assert np.ptp(formation, axis=0).max() < 1e-9
     assert np.abs(group.vs - V_C).max() < 1e-9
 
@@ -277,9 +279,9 @@ def test_circular_motion_turns_about_the_centre():
     """Held for a tick, the turning reference h_i'' leaves an error of the order of the step; the rest is gone."""
     s = scenario("dcs-ft", topology="ring")
     group = Group(s, SPREAD, np.zeros((5, 2))).run(Plan(LOST, (20.0, 10.0), centre=(20.0, 10.0)), seconds=100.0)
-    offset = group.xs - (20.0, 10.0)
-    assert np.hypot(*offset.T) == pytest.approx([s.dcs_ft.circle] * 5, rel=1e-3)
-    assert np.hypot(*group.vs.T) == pytest.approx([s.dcs_ft.circle * s.dcs_ft.turn] * 5, rel=1e-2)
+    offset, radii = group.xs - (20.0, 10.0), s.dcs_ft.circle * np.arange(1, 6) / 5
+    assert np.hypot(*offset.T) == pytest.approx(radii, rel=1e-3)
+    assert np.hypot(*group.vs.T) == pytest.approx(radii * s.dcs_ft.turn, rel=1e-2)
     assert s.dcs_ft.circle * s.dcs_ft.turn < s.body.max_speed
 
 

@@ -64,7 +64,7 @@ def integrate(phi: Phi, xs: Sequence[Vector], vs: Sequence[Vector], until: float
             moved.append(Motion(x, y, m.vx + dt * u_x, m.vy + dt * u_y))
         motions = moved
     table: NDArray[np.float64] = np.array(kept)
-    t: NDArray[np.float64] = np.arange(len(kept)) * sampling.keep
+    t: NDArray[np.float64] = np.arange(len(kept), dtype=np.float64) * sampling.keep
     return Course(t, table[:, :, :2], table[:, :, 2:])
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 PERIOD = 0.5  # "we record the data at every 0.5 s"
 NEAR = 0.05  # m and m/s: within this the swarm has settled, for a row
 # (name, scenario values over the file): r_3 omega_0 is 1.2 m/s as printed, and Table 3.2 gives v_max = 0.8 m/s.
-CIRCLES = (
+CIRCLES: tuple[tuple[str, dict[str, object]], ...] = (
     ("as printed", {}),
     ("omega_0 = 0.05", {"drill.turn": 0.05}),
     ("v_max = 2", {"body.max_speed": 2.0}),

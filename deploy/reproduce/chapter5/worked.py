@@ -123,7 +123,8 @@ def circular_example(options: Options) -> Result:
     def circle(s: float) -> Array:
         """Places and their velocities, (N, 2, 2)."""
         orbits = [orbit(RADIUS, TURN, 2 * pi * (i + 1) / 3 + TURN * s) for i in range(3)]
-        return np.array(orbits) + np.array([CENTRE, HERE])
+        places: Array = np.array(orbits) + np.array([CENTRE, HERE])
+        return places
 
     phi = partial(circular, centre=HERE, beta=BETA, gamma=GAMMA, lam1=LAM, lam2=LAM)
     start = circle(0.0)
@@ -143,7 +144,8 @@ def circular_example(options: Options) -> Result:
             "at 25 m/s: the example has no bodies; the robots do 0.8 m/s"),
         *(Row(f"rate of the tail, eigenvalue {mu:g} of L", "a finite time (Corollary 3)",
               f"{rates[mu]:.4f} /s; (beta mu + lambda_2) / (gamma mu + lambda_1) = {theory[mu]:.4f} /s", DIFFERS,
-              "on phi = 0 the error obeys (gamma mu + lambda_1) y' = -(beta mu + lambda_2) y") for mu in modes),
+              "on phi = 0 the error obeys (gamma mu + lambda_1) y' = -(beta mu + lambda_2) y; the step adds about"
+              f" {DT * (K + LAM) * theory[mu] / (GAMMA * mu + LAM):.1%}") for mu in modes),
         *_rows("largest |x_i - h_i - h^c|, m,", t, off, (1.0, 1e-3, 1e-6)),
     ]  # fmt: skip
     shown = t <= 30.0

@@ -5,7 +5,7 @@ Exponents: a1 stands in the table; a2 = 2 a1 / (1 + a1) follows from it (robot_a
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -29,15 +29,16 @@ class DcsFt(Table, frozen=True):
     a1: OpenFraction = 0.6  # of the positions; the alpha of Table 5.3
     k1: Positive = 0.5  # position gain of an edge
     k2: Positive = 0.6  # velocity gain of an edge
-    k3: NonNegative = 0.4  # velocity gain towards v_c (5.5); 0: consensus alone, (5.3)
+    k3: NonNegative = 0.6  # velocity gain towards v_c (5.5); 0: consensus alone, (5.3)
     k4: Positive = 0.2  # position gain towards the circle (5.7)
     k5: Positive = 0.3  # velocity gain towards the circle
-    position_limit: Positive = 0.4  # of all position terms of the neighbours together, per axis, m/s^2
+    position_limit: Positive = 0.3  # of all position terms of the neighbours together, per axis, m/s^2
     velocity_limit: Positive = 0.2  # of all their velocity terms
-    reference_limit: Positive = 0.15  # of a term towards the reference; twice that for k3, which is alone; 0.90 in all
+    reference_limit: Positive = 0.2  # of a term towards the reference; twice that for k3, which is alone; 0.90 in all
     radius: Positive = 5.0  # of the formation h_i, m
     sectors: Annotated[int, Meta(ge=0, le=1000)] = 0  # h_i at 2 pi i / sectors; 0: N
     circle: Positive = 10.0  # r of the circular motion, m
+    orbits: Literal["spread", "one"] = "spread"  # radii r i/N, as with dcs, or r for all
     turn: Positive = 0.06  # omega_0, rad/s
     repulsion: bool = True  # (3.35) added
     clearance: Positive = 2.0  # its d for this law, m

@@ -48,4 +48,4 @@ class Ccs(Table, frozen=True):
     """A reading of the cooperative control system [Lu & Han 2011], of which nothing could be read; all INFERRED."""
 
     neighbours: Annotated[int, Meta(ge=0, le=1000)] = 2  # L: how many of the nearest neighbours (2.7) takes
-    radius: NonNegative = 3.0  # of the formation about the planned position, m
+    radius: NonNegative = 1.0  # of the formation about the planned position, m: no more than what counts as found
