@@ -70,8 +70,10 @@ ALGORITHMS: dict[str, Algorithm] = {
     "ppso-im": Algorithm("swarm centre or draw from all best places", PpsoImDecision, CentrePlanner, ConsensusControl),
     "lpso": Algorithm("source map with consensus (2.7)", LpsoDecision, CentrePlanner, ConsensusControl),
     "ccs-like": Algorithm("DDA with (2.7) of the 2 nearest in formation", DistributedDecision, TracePlanner, CcsControl),
-    "surge": Algorithm("no decision: upwind in formation", SurgeDecision, surge_planner, formation_control),
-    "surge-cast": Algorithm("no decision: upwind, across when lost", CastDecision, surge_planner, formation_control),
+    "surge": Algorithm("no decision: upwind in formation", SurgeDecision, surge_planner, formation_control, gains="dcs"),
+    "surge-cast": Algorithm(
+        "no decision: upwind, across when lost", CastDecision, surge_planner, formation_control, gains="dcs"
+    ),
     "random-walk": Algorithm("no decision: straight random legs", WalkDecision, walk_planner, VelocityControl),
     "pso": Algorithm("PSO (2.1)-(2.3), driven directly", pso, discrete.pso, DirectControl),
     "cpso": Algorithm("charged PSO, driven directly", cpso, discrete.cpso, DirectControl),

@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from deploy.cli.algorithms import algorithms
 from deploy.cli.reproduce import reproduce
 from deploy.cli.robot import robot
 from deploy.cli.run import run
@@ -21,7 +22,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, world, robot, topology, sweep, reproduce, view):
+for command in (run, world, robot, topology, algorithms, sweep, reproduce, view):
     app.command()(command)
 
 

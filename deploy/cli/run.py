@@ -22,7 +22,7 @@ from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED
 def run(
     file: Annotated[Path | None, Argument(metavar="[SCENARIO.toml]", help="A scenario file; none: the default.")] = None,
     robots: Annotated[int | None, Option("--robots", "-n", help="Number of robots.")] = None,
-    algorithm: Annotated[str | None, Option("--algorithm", "-a", help="simple, cfpso, dcs.")] = None,
+    algorithm: Annotated[str | None, Option("--algorithm", "-a", help="One of `odourswarm algorithms`.")] = None,
     topology: Annotated[str | None, Option("--topology", "-t", help="A named graph, or a graph file.")] = None,
     case: Annotated[int | None, Option("--case", help="Source and wind of Table 4.6, 1 to 9.")] = None,
     source: Annotated[str | None, Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,

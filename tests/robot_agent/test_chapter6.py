@@ -262,7 +262,8 @@ def test_virtual_robots_stay_on_the_leash_while_the_real_ones_cannot_follow():
 def test_the_robot_that_smelt_last_leads_and_the_others_take_its_velocity():
     """Everyone's v_c^i but the leader's points another way."""
     group = Points(scenario(), COLUMN)
-    group.laws[2]._smelt_at = 5.0
+    group.laws[2]._own_smell = 5.0
+    group.laws[2]._smell = (5.0, 1.0, 2.0)
     told = {2: (0.6, 0.0)}
     group.run(lambda i: Plan(TRACE, (0.0, 0.0), v_c=told.get(i, (-0.6, 0.3))), seconds=18.0)
     assert np.abs(group.vs - (0.6, 0.0)).max() < 0.05
@@ -281,7 +282,7 @@ def test_virtual_state_travels_over_the_wire_from_the_second_tick_on():
     assert first.virtual == ()
     agent.act([])
     second = agent.sense(Reading(0, 1, 0.05, 5.0, 1.0, 0.2, 0.0, 0.0, 1.0, 0.0, 0.0))
-    assert len(second.virtual) == 4
+    assert len(second.virtual) == 7
     assert math.hypot(second.virtual[0] - 5.0, second.virtual[1] - 1.0) < 0.3
     wire = Codec(7)
     assert wire.decode(wire.encode(second)) == second
