@@ -85,7 +85,7 @@ def make(options: Options) -> Result:
                 "finite-time; stable at T > 55.32 (Remark 22)",
                 f"straight line, rate {slow:.4f}/s from 1e-9 to 1e-10 m; beta/gamma = {BETA / GAMMA:.4f}/s",
                 DIFFERS,
-                f"exponential: on phi = 0 the position obeys gamma y' = -beta y; at 55.32 s round-off, {there:.1e} m, is met",
+                f"exponential: on phi = 0 the position obeys gamma y' = -beta y; at 55.32 s it is round-off, {there:.1e} m",
             ),
             Row(
                 "log error of (4.12), gains of Table 4.5",

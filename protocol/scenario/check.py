@@ -137,7 +137,19 @@ def _graph(scenario: Scenario) -> Iterator[Fault]:
         yield f"graph: {fault}.", ("graph", "robots")
 
 
-CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (_arena, _source, _start, _timing, _drill, _network, _graph)
+def _potential(scenario: Scenario) -> Iterator[Fault]:
+    p = scenario.ftmcs
+    if p.attack > p.defence:
+        yield (
+            f"ftmcs.attack is {p.attack:g}; it must be at most ftmcs.defence, which is {p.defence:g}, or robots at"
+            " distance d would not be at rest.",
+            ("ftmcs.attack", "ftmcs.defence"),
+        )
+
+
+CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (
+    _arena, _source, _start, _timing, _drill, _network, _graph, _potential,
+)
 
 
 def _inside(scenario: Scenario, x: float, y: float) -> bool:

@@ -30,6 +30,7 @@ LITERAL: dict[str, object] = {
     "dcs.orbits": "one",
     "ftmcs.reference": "all",
     "ftmcs.turn": 0.1,
+    "ftmcs.centre": "decided",
     "ftmcs.circle_reach": "cut",
     "ftmcs.leash": 0.0,
     "ftmcs.limited": False,

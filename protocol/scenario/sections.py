@@ -129,6 +129,7 @@ class Decision(Table, frozen=True):
     recall: NonNegative = 20.0  # x_l, x_g (2.3) are the best of the latest so many seconds; 0: of all, as printed
     c1: Fraction = 0.8  # weight of the wind estimate in (3.31), Table 3.1; c_2 = 1 - c_1
     lost_after: Positive = 20.0  # no detection in the group for this long: lost, s
+    lost: Literal["smell", "keep"] = "smell"  # then h^ic is where the odour was met last, or stays as printed
 
 
 class Fusion(Table, frozen=True):
@@ -147,6 +148,9 @@ class Planning(Table, frozen=True):
     slope_limit: NonNegative = 1.0  # bound on |w_y / w_x|; 0: none
     slope: Literal["magnitude", "printed"] = "magnitude"  # |w_y| / |w_x|, or |w_y| / w_x as printed
     speed: Positive = 0.8  # |v_c|, m/s
+    lost: Literal["circle", "rest"] = "circle"  # without a plume the plan circles about h^ic, or is h^ic as printed
+    circle: Positive = 10.0  # radius of the last robot's circle, m; robot i's is i/N of it
+    turn: Positive = 0.06  # rad/s
     passed: Literal["upwind", "back"] = "upwind"  # where v_c points when the robot is upwind of its target already
 
 

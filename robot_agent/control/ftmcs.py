@@ -6,15 +6,21 @@ virtual robot is integrated on board and told to the neighbours; they feel each 
 Thesis (6.5), circular motion: (6.4) with w = h_r', h_r = h^ic + R (cos theta_r, sin theta_r), theta_r' = omega_0, and a
 further robot at h_r in the potential.
 
-Departs from the thesis: while the group traces, v_c^i counts only of the robot that smelt last (`ftmcs.reference`):
-lambda = 0 for the others, who follow by consensus. With everyone's the group moves at the mean of what points from all
-sides to h, which is ever slower the nearer it comes, and it is the middle of the formation that is led to the plume,
-whether a robot is there or not. omega_0 such that R omega_0 can be driven (`ftmcs.turn`); theta_r = omega_0 t by the common
-simulated time, so that no phase has to be agreed; the robot at h_r is felt at any distance (`ftmcs.circle_reach`):
-J is flat beyond r = 1.2 d = 3 m, and the robots would circle wherever they are; the virtual robot moves no faster than
-a real one and stays near it (`ftmcs.limited`, `ftmcs.leash`): it has no torques that saturate, and would run away from
-a robot that has; (3.35) is added when somebody is within `ftmcs.clearance` (`ftmcs.repulsion`), for on a graph that is
-not complete the potential does not see everyone.
+Departs from the thesis, each a switch of the table `ftmcs`:
+  reference    While the group traces, v_c^i counts only of the robot that met the odour last: lambda = 0 for the others,
+               who follow by consensus. With everyone's the group moves at the mean of what points from all sides to h,
+               ever slower the nearer it comes, and it is the middle of the formation that is led along the plume,
+               whether a robot is there or not.
+  centre       A lost group circles where the odour was met last: there is a plume, and the circle crosses it. Where h^ic
+               is wrong a circle about it may cross nothing, and without odour h^ic does not change.
+  circle_reach The robot at h_r is felt at any distance. J is flat beyond r = 1.2 d = 3 m: robots farther away would
+               take its velocity only and circle wherever they are.
+  turn         omega_0 such that R omega_0 can be driven; theta_r = omega_0 t by the common simulated time, so that no
+               phase has to be agreed.
+  limited, leash  The virtual robot moves no faster than a real one and stays near it: it has no torques that saturate
+               and would run away from a robot that has.
+  repulsion    (3.35) is added when somebody is within `clearance`: where the graph is not complete the potential does
+               not see everyone.
 """
 
 from __future__ import annotations
@@ -36,6 +42,9 @@ from robot_agent.interfaces import LOST, SEARCH, TRACE, Controller, Fresh, Plan,
 from robot_agent.neighbours import Placed
 from robot_agent.sig import STEPS
 
+NOWHERE = (NEVER, 0.0, 0.0)
+TOLD = 7  # numbers in `virtual`: the virtual robot's four, and the latest smell's time and place
+
 
 class FtmcsControl(Controller):
     """(6.4) while the group traces, (6.5) while it is lost, (6.2) always."""
@@ -53,12 +62,13 @@ class FtmcsControl(Controller):
         self._keep = replace(scenario.repulsion, d=p.clearance)
         self._threshold = scenario.decision.threshold
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
-        self._smelt_at = NEVER
+        self._own_smell = NEVER  # when this robot met the odour last, s
+        self._smell = NOWHERE  # when and where anyone did, as far as this robot has heard
         self._me: Virtual | None = None
         self._searching = True
 
     def virtual(self) -> tuple[float, ...]:
-        return () if self._me is None else tuple(self._me)
+        return () if self._me is None else (*self._me, *self._smell)
 
     def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
         p = self._p
@@ -68,13 +78,12 @@ class FtmcsControl(Controller):
         self._searching = searching
         me = self._me
         heard = [(a_ij, virtual_of(s, own.tick, dt)) for a_ij, s in fresh]
-        if own.concentration > self._threshold and own.tick % self._ticks_per_decision == 0:
-            self._smelt_at = own.t
+        self._smell_now(own, fresh)
         if self._circles(plan):
             self._me, acceleration = self._turn(me, heard, own, plan, dt)
         else:
             form = not searching or p.search == "parallel"
-            self._me, acceleration = self._parallel(me, heard, plan, dt, self._leads(fresh, plan), form)
+            self._me, acceleration = self._parallel(me, heard, plan, dt, self._leads(plan), form)
         step = dt if self._implicit else 0.0
         u = (
             acceleration[0] - pull(own.x - me.x, own.vx - me.vx, p.k, p.k1, p.q, step),
@@ -87,11 +96,19 @@ class FtmcsControl(Controller):
         """Whether (6.5) rules: Algorithm 5."""
         return plan.mode == LOST
 
-    def _leads(self, fresh: Fresh, plan: Plan) -> bool:
+    def _smell_now(self, own: Own, fresh: Fresh) -> None:
+        """Remember the latest meeting with the odour in the group: it travels from neighbour to neighbour."""
+        if own.concentration > self._threshold and own.tick % self._ticks_per_decision == 0:
+            self._own_smell = own.t
+            self._smell = max(self._smell, (own.t, own.x, own.y))
+        for _, s in fresh:
+            if len(s.virtual) >= TOLD:
+                at, x, y = s.virtual[4:TOLD]
+                self._smell = max(self._smell, (at, x, y))
+
+    def _leads(self, plan: Plan) -> bool:
         """Whether this robot's own v_c^i counts: while the group traces, that of whoever smelt last."""
-        if self._p.reference == "all" or plan.mode != TRACE:
-            return True
-        return self._smelt_at >= max((s.detected_at for _, s in fresh), default=NEVER)
+        return self._p.reference == "all" or plan.mode != TRACE or self._own_smell >= self._smell[0]
 
     def _parallel(
         self, me: Virtual, heard: list[tuple[float, Virtual]], plan: Plan, dt: float, leads: bool, form: bool
@@ -111,9 +128,10 @@ class FtmcsControl(Controller):
         theta, omega = p.turn * own.t, p.turn
         arm_x, arm_y = p.circle * cos(theta), p.circle * sin(theta)
         slope_x, slope_y = self._slope(self._circle, me, heard)
-        x, y = self._circle.slope(
-            me.x, me.y, plan.centre[0] + arm_x, plan.centre[1] + arm_y, cut=p.circle_reach == "cut"
-        )
+        at, c_x, c_y = self._smell
+        if p.centre == "decided" or at == NEVER:
+            c_x, c_y = plan.centre
+        x, y = self._circle.slope(me.x, me.y, c_x + arm_x, c_y + arm_y, cut=p.circle_reach == "cut")
         gains = self._gains(p.circle_lam, p.circle_beta, self._circle.stiffness * (2.0 * len(heard) + 1.0))
         h_r_dot = (-omega * arm_y, omega * arm_x)
         h_r_ddot = (-omega * omega * arm_x, -omega * omega * arm_y)
@@ -160,6 +178,6 @@ def potential(p: Ftmcs, d: float) -> Potential:
 
 def virtual_of(s: Shared, tick: int, dt: float) -> Virtual:
     """A neighbour's virtual robot at `tick`; its real state while it has told none."""
-    x, y, vx, vy = s.virtual[:4] if len(s.virtual) >= 4 else (s.x, s.y, s.vx, s.vy)
+    x, y, vx, vy = s.virtual[:4] if len(s.virtual) >= TOLD else (s.x, s.y, s.vx, s.vy)
     age = (tick - s.tick) * dt
     return Virtual(x + age * vx, y + age * vy, vx, vy)

@@ -34,9 +34,7 @@ def pull(e1: float, e2: float, k: float, k1: float, q: float, dt: float = 0.0) -
     return _solve(e1, e2, k, share, inverse, 1.0 / power, dt, most)
 
 
-def _solve(
-    e1: float, e2: float, k: float, share: float, inverse: float, steep: float, dt: float, most: float
-) -> float:
+def _solve(e1: float, e2: float, k: float, share: float, inverse: float, steep: float, dt: float, most: float) -> float:
     """The w in [0, most] with sig(e2 - dt w)^inverse + share (e1 + dt (e2 - dt w)) = (w/k)^steep, by Newton's method
     with a bracket."""
     low, high = 0.0, most

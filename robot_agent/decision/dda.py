@@ -58,6 +58,8 @@ class DistributedDecision(Decision):
         p_hat = self._oscillation_centre(group)
         c1, c2 = d.c1, 1.0 - d.c1
         self.h = (c1 * self.state[0] + c2 * p_hat[0], c1 * self.state[1] + c2 * p_hat[1])
+        if d.lost == "smell" and group.lost(own.t, d.lost_after):
+            self.h = (group.best_x, group.best_y)  # no measurement speaks for y_i any more
 
     def advance(self, fresh: Fresh, dt: float) -> None:
         # A neighbour that has not heard of the first detection has no fusion state yet.

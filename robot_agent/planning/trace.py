@@ -13,7 +13,7 @@ Departs from the thesis: |w_x| for w_x, and the slope |w_y / w_x| is bounded (sw
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, pi, sin
 
 from protocol.scenario import RobotScenario
 from robot_agent.hand import Own
@@ -25,11 +25,14 @@ class TracePlanner(Planner):
 
     def __init__(self, scenario: RobotScenario) -> None:
         self._planning = scenario.planning
+        self._share = (scenario.robot + 1) / scenario.robots
         self._dt = scenario.timing.decision
         self._last: Point | None = None
         self._p_dot: Point = (0.0, 0.0)
 
     def plan(self, own: Own, h: Point, lost: bool) -> Plan:
+        if lost and self._planning.lost == "circle":
+            return self._circling(own, h)
         target = h if lost else self._downwind(own, h)
         if self._last is None:
             self._last = (own.x, own.y)
@@ -45,6 +48,17 @@ class TracePlanner(Planner):
     def _has_passed(own: Own, target: Point) -> bool:
         """Whether the robot is upwind of its target."""
         return (own.x - target[0]) * own.wind_x + (own.y - target[1]) * own.wind_y < 0.0
+
+    def _circling(self, own: Own, h: Point) -> Plan:
+        """The plan goes round h on a circle of this robot's own, as (5.6) does with the robots."""
+        p = self._planning
+        radius, theta = p.circle * self._share, 2.0 * pi * self._share + p.turn * own.t
+        x, y = radius * cos(theta), radius * sin(theta)
+        w2 = p.turn**2
+        target = (h[0] + x, h[1] + y)
+        self._last, self._p_dot = target, (-p.turn * y, p.turn * x)
+        v_c = scaled(target[0] - own.x, target[1] - own.y, p.speed)
+        return Plan(LOST, target, self._p_dot, (-w2 * x, -w2 * y), v_c, centre=h)
 
     def _downwind(self, own: Own, h: Point) -> Point:
         w_x, w_y = own.wind_x, own.wind_y

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from protocol.codec import Codec
+from protocol.errors import ScenarioError
 from protocol.messages import Reading, Shared
 from protocol.scenario import Scenario, robot_view
 from protocol.scenario.load import load_scenario
@@ -73,6 +74,11 @@ def test_unequal_attack_and_defence_keep_the_rest_distance():
     uneven = Potential(D, R, 2.0, 6.0, EPSILON, 0.2)
     assert uneven.slope(0.0, 0.0, D, 0.0) == pytest.approx((0.0, 0.0), abs=1e-12)
     assert uneven.slope(0.0, 0.0, 1.0, 0.0)[0] > -J.slope(0.0, 0.0, 8.0, 0.0)[0]
+
+
+def test_attack_stronger_than_defence_is_refused_with_a_sentence():
+    with pytest.raises(ScenarioError, match=r"ftmcs\.attack is 6; it must be at most ftmcs\.defence"):
+        scenario(ftmcs__attack=6.0)
 
 
 @given(distance=st.floats(0.0, 9.0), heading=headings)
@@ -248,6 +254,19 @@ def test_group_circles_the_decided_source_at_the_radius_of_the_virtual_robot():
     assert np.linalg.norm(group.vs - along, axis=1).max() < 0.15
     assert p.circle * p.turn < group.s.body.max_speed
     assert group.nearest > 0.4  # the virtual robot draws all to one place, and the nearer they come the less
+
+
+@pytest.mark.parametrize(("centre", "at"), [("smelt", (0.0, 0.0)), ("decided", (20.0, 10.0))])
+def test_a_lost_group_circles_where_the_odour_was_met_last_even_if_only_one_robot_met_it(centre, at):
+    """On a line the place travels from neighbour to neighbour."""
+    s = scenario(topology="line", ftmcs__centre=centre, ftmcs__circle=3.0, ftmcs__turn=0.1)
+    group = Points(s, [(2, 3), (5, 3), (8, 3), (11, 3), (14, 3)])
+    group.laws[0]._smell = (3.0, 0.0, 0.0)
+    group.laws[3]._smell = (2.0, 90.0, 90.0)  # older
+    group.run(lambda i: Plan(LOST, (20.0, 10.0), centre=(20.0, 10.0)), seconds=35.0)
+    theta = s.ftmcs.turn * group.tick * s.timing.tick
+    leader = np.array(at) + s.ftmcs.circle * np.array((math.cos(theta), math.sin(theta)))
+    assert np.linalg.norm(group.xs.mean(axis=0) - leader) < 2.5
 
 
 def test_virtual_robots_stay_on_the_leash_while_the_real_ones_cannot_follow():

@@ -68,8 +68,7 @@ def make(options: Options) -> Result:
             "the robots circle the predicted source (Figure 6.9)",
             f"{off[True]:.1f} m; the farthest robot is {away[True]:.1f} m from the leader",
             DIFFERS,
-            "J is flat beyond r: robots that start farther away take its velocity, not its place."
-            " Section 6.3 has r = 9 m",
+            "J is flat beyond r: robots that start farther away take its velocity, not its place. Section 6.3 has r = 9 m",
         ),
         Row(
             "the same, leader felt at any distance",

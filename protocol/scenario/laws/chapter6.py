@@ -26,11 +26,12 @@ class Ftmcs(Table, frozen=True):
     circle_d: Positive = 2.5  # and while it circles, m
     reach: Annotated[float, Meta(gt=1, le=100)] = 1.2  # range of the potential r = reach d
     attack: Action = 5.0  # a of Olfati-Saber's action function: attraction
-    defence: Action = 5.0  # b: repulsion, at least a
+    defence: Action = 5.0  # b: repulsion; at least a
     epsilon: Positive = 0.1  # of the sigma-norm
     h: Annotated[float, Meta(ge=0, lt=1)] = 0.2  # of the bump function
     circle: Positive = 15.0  # R, m
     turn: Real = 0.04  # omega_0, rad/s; printed 0.1 asks R omega_0 = 1.5 m/s of robots that do 0.8
+    centre: Literal["smelt", "decided"] = "smelt"  # of the circle: where the odour was met last, or h^ic as printed
     circle_reach: Literal["all", "cut"] = "all"  # the virtual robot of (6.5) is felt at any distance, or within r
     search: Literal["free", "parallel"] = "free"  # the potential acts from the first detection on, or from the start
     reference: Literal["smelt", "all"] = "smelt"  # whose v_c^i counts in (6.4): of whoever smelt last, or everyone's
