@@ -58,18 +58,23 @@ def keep_clear(u: Point, own: Own, others: Sequence[Placed], potential: Repulsio
     braking before somebody who comes fast.
 
     The law's u_i is first limited to `top`, what the wheels can give, m/s^2: laws that pull with metres per second
-    squared for every metre of distance would drown any repulsion. The sum is shortened to what the wheels can do.
+    squared for every metre of distance would drown any repulsion; and from 2 `potential.gap` to one it gives way: a
+    queue that presses the same way would close the gap of the first pair. The sum is shortened to what the wheels can do.
     """
     fx, fy = gradient_force(own.x, own.y, others, potential, potential.d)
-    if potential.gap > 0.0:
+    gap = potential.gap
+    share = 1.0
+    if gap > 0.0:
         bx, by = braking(own, others, potential, top)
         fx, fy = fx + bx, fy + by
-    if fx == 0.0 and fy == 0.0:
+        nearest = min((hypot(own.x - x, own.y - y) for x, y, _, _ in others), default=2.0 * gap)
+        share = min(1.0, max(0.0, nearest - gap) / gap)
+    if fx == 0.0 and fy == 0.0 and share == 1.0:
         return u
     size = hypot(*u)
-    scale = top / size if size > top else 1.0
+    scale = share * (top / size if size > top else 1.0)
     ux, uy = scale * u[0] + fx, scale * u[1] + fy
-    return within_reach(ux, uy, own, top) if potential.gap > 0.0 else (ux, uy)
+    return within_reach(ux, uy, own, top) if gap > 0.0 else (ux, uy)
 
 
 def anyone_within(x: float, y: float, others: Iterable[Placed], reach: float) -> bool:
