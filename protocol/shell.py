@@ -23,6 +23,7 @@ EXIT_OK, EXIT_BAD_INPUT, EXIT_FAILED = 0, 2, 3
 
 
 _launcher_gone = threading.Event()
+_parent = os.getppid()
 
 
 class Stop(BaseException):
@@ -42,8 +43,11 @@ def stop_on_signals(*, leash: bool) -> None:
 
 
 def clean_up_after_launcher(folder: Path) -> None:
-    """Remove the run's folder if the launcher, whose business that is, is gone."""
-    if _launcher_gone.is_set():
+    """Remove the run's folder if the launcher, whose business that is, is gone.
+
+    This process may end because others did, before its own leash is heard of; a parent that is gone shows at once.
+    """
+    if _launcher_gone.is_set() or os.getppid() != _parent:
         shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -58,8 +62,8 @@ def serve_until_done(serve: Callable[[], object], *, leash: bool, folder: Path) 
 
     What failed is one sentence on standard error, where the launcher reads it.
     """
-    stop_on_signals(leash=leash)
     try:
+        stop_on_signals(leash=leash)  # in here: a leash that has ended already stops at once
         serve()
     except OdourswarmError as error:
         print(error, file=sys.stderr)

@@ -14,13 +14,14 @@ from protocol.scenario.sections import Body
 class Own:
     """What a robot knows of its own motion at one tick, in hand coordinates, and what it senses there."""
 
-    __slots__ = ("concentration", "lever", "nu", "omega", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
+    __slots__ = ("concentration", "lever", "nu", "omega", "swing", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
 
     def __init__(self, reading: Reading, body: Body) -> None:
         L = body.hand
         c, s = cos(reading.theta), sin(reading.theta)
         nu, omega = reading.nu, reading.omega
         self.lever = 0.5 * body.axle / L  # what a sideways acceleration costs the wheels, compared with a forward one
+        self.swing = L * omega * omega  # the hand's acceleration towards the axle by turning alone, m/s^2
         self.tick = reading.tick
         self.t = reading.t
         self.theta = reading.theta

@@ -17,7 +17,7 @@ from msgspec.structs import replace
 
 from protocol.scenario import RobotScenario
 from robot_agent.control.consensus_laws import agreement, circular, formation, orbit, parallel, relative, respond
-from robot_agent.control.give_way import give_way
+from robot_agent.control.repulsion import keep_clear
 from robot_agent.hand import Own, top_acceleration
 from robot_agent.interfaces import Controller, Fresh, Plan, Point
 from robot_agent.neighbours import Placed
@@ -39,7 +39,7 @@ class ConsensusDrill(Controller):
 
     def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
         u = self._law(own, fresh, plan, dt)
-        return give_way(u, own, others, self._potential, self._top) if self._p.repulsion else u
+        return keep_clear(u, own, others, self._potential, self._top) if self._p.repulsion else u
 
     def _law(self, own: Own, fresh: Fresh, plan: Plan, dt: float) -> Point:
         p, h = self._p, self._h

@@ -22,7 +22,6 @@ from robot_agent.control.consensus_laws import (
     relative,
     respond,
 )
-from robot_agent.control.give_way import give_way
 from robot_agent.control.repulsion import gradient_force
 from robot_agent.sig import explicit_step
 
@@ -153,38 +152,6 @@ def test_the_others_go_on_when_a_robot_dies():
 def test_a_crowd_keeps_apart(algorithm, topology, robots):
     outcome, _, _ = run(drill(algorithm, topology=topology, robots=robots, max_time=25.0))
     assert outcome.min_pair_distance > 0.4
-
-
-class Still:
-    """A robot's own motion, at the origin."""
-
-    def __init__(self, vx: float = 0.0, vy: float = 0.0):
-        self.x = self.y = 0.0
-        self.vx, self.vy = vx, vy
-
-
-@given(st.floats(2.0, 50.0), st.floats(0, 6.3), number, number)
-def test_nobody_near_leaves_the_law_as_it_is(distance, angle, ux, uy):
-    there = ((distance + 1e-9) * math.cos(angle), (distance + 1e-9) * math.sin(angle), 0.0, 0.0)
-    near = math.hypot(*there[:2]) < 2.0
-    assert near or give_way((ux, uy), Still(), [there], Repulsion(d=2.0), 0.9) == (ux, uy)
-
-
-def test_closer_robots_leave_the_law_less_and_brake_what_closes():
-    potential = Repulsion(d=2.0)
-
-    def left_of_law(distance: float) -> float:
-        other = [(distance, 0.0, 0.0, 0.0)]
-        return give_way((0.5, 0.0), Still(), other, potential, 0.9)[0] - gradient_force(0.0, 0.0, other, potential, 2.0)[0]
-
-    shares = [left_of_law(distance) for distance in (1.99, 1.8, 1.5, 1.25, 1.0)]
-    assert shares == sorted(shares, reverse=True)
-    assert shares[0] == pytest.approx(0.5, rel=0.02)
-    assert shares[-1] == pytest.approx(0.0)
-    ahead = [(1.5, 0.0, 0.0, 0.0)]
-    coming, going = (give_way((0.0, 0.0), Still(vx), ahead, potential, 0.9)[0] for vx in (0.5, -0.5))
-    at_rest = give_way((0.0, 0.0), Still(), ahead, potential, 0.9)[0]
-    assert coming < at_rest == going
 
 
 def test_exercises_say_that_they_are_ones():

@@ -205,6 +205,7 @@ class Points:
             for i, (x, v) in enumerate(zip(self.xs, self.vs, strict=True)):
                 own = Own(Reading(i, self.tick, self.tick * dt, x[0], x[1], 0.0, 0.0, 0.0, 1.0, 0.0, 0.0), body)
                 own.vx, own.vy = float(v[0]), float(v[1])
+                own.lever = 1.0  # a point can go sideways as well as forward
                 owns.append(own)
             told = [
                 Shared(o_i, self.tick, o.x, o.y, o.vx, o.vy, *(0.0,) * 7, 0, 0, *(0.0,) * 4, virtual=law.virtual())

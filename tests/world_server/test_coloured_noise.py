@@ -33,7 +33,7 @@ def test_transition_equals_the_matrix_exponential(w: float, zeta: float, dt: flo
     phi, root = transition(w, zeta, dt)
     phi_slow, q_slow = by_matrix_exponential(w, zeta, dt)
     np.testing.assert_allclose(phi, phi_slow, atol=1e-9)
-    np.testing.assert_allclose(root @ root.T, q_slow, atol=1e-9)
+    np.testing.assert_allclose(root @ root.T, q_slow, atol=1e-8)  # the reference cancels to about 1e-9
 
 
 @given(bandwidths, dampings, steps)

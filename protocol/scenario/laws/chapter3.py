@@ -20,5 +20,6 @@ class Repulsion(Table, frozen=True):
     kappa: Positive = 0.5
     d: Positive = 4.0  # m
     d0: Positive = 6.6  # m
-    gap: NonNegative = 0.8  # robots that come fast brake to stop so far apart, m; 0: (3.35) alone
+    gap: NonNegative = 0.8  # the barrier lets no pair of robots closer, m; 0: (3.35) alone
+    brake: Positive = 0.3  # how hard the barrier counts on each robot to brake, m/s^2
     form: Literal["sum", "switch"] = "sum"  # added to (3.34), or instead of it within d0 as printed
