@@ -1,4 +1,4 @@
-"""A result on disk: one PNG a picture, one JSON with the numbers.
+"""A result on disk: one PNG a picture, one Markdown page, one JSON with the numbers.
 
 Rules: a file is complete or not there: it is written beside its place and moved.
 """
@@ -15,6 +15,7 @@ from tempfile import TemporaryFile
 import msgspec
 
 from deploy.reproduce.kinds import Reproduction, Result
+from deploy.reproduce.markdown import page
 from protocol.errors import ScenarioError
 
 DPI = 120
@@ -33,7 +34,7 @@ def prepare(folder: Path) -> None:
 
 
 def write(reproduction: Reproduction, result: Result, folder: Path) -> list[Path]:
-    """Write the result under `folder`; the files: the pictures, then the numbers.
+    """Write the result under `folder`; the files: the pictures, the page, then the numbers.
 
     Raises: ScenarioError when that fails (a full disk).
     """
@@ -49,15 +50,18 @@ def write(reproduction: Reproduction, result: Result, folder: Path) -> list[Path
         folder / f"{reproduction.name}{'-' + ending if ending else ''}.png": figure
         for ending, figure in result.figures.items()
     }
+    words = folder / f"{reproduction.name}.md"
     numbers = folder / f"{reproduction.name}.json"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for path, figure in pictures.items():
             _place(path, partial(figure.savefig, format="png", dpi=DPI, bbox_inches="tight"))
+        told = page(reproduction, result, [path.name for path in pictures])
+        _place(words, lambda part: part.write_text(told, encoding="utf-8"))
         _place(numbers, lambda part: part.write_bytes(text + b"\n"))
     except OSError as error:
         raise _cannot(folder, error) from None
-    return [*pictures, numbers]
+    return [*pictures, words, numbers]
 
 
 def _plain(value: object) -> object:
