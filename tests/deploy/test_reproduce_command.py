@@ -82,7 +82,8 @@ def test_a_person_reads_every_row_with_its_verdict(registered: Callable[..., Non
     for part in ("An example (Figure 0.1)", "differs height [m]", "thesis 1.0 [/sic]", "we 1.1", "a misprint", "we 5"):
         assert part in words
     assert "ours width we 5" in words  # the thesis says nothing about it: no line for it
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["fig-0.1-side.png", "fig-0.1.json", "fig-0.1.md", "fig-0.1.png"]
+    written = sorted(path.name for path in tmp_path.iterdir())
+    assert written == ["fig-0.1-side.png", "fig-0.1.json", "fig-0.1.md", "fig-0.1.png"]
     told = (tmp_path / "fig-0.1.md").read_text()
     assert "![fig-0.1](fig-0.1.png)" in told
     assert "| the thesis |" in told

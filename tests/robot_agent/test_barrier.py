@@ -112,5 +112,5 @@ def test_robots_that_are_pulled_together_stay_apart(robots, seed, gather):
             others = [(o.x, o.y, o.vx, o.vy) for o in owns if o is not own]
             torques.append(wheel_torques(*keep_clear(u, own, others, POTENTIAL, TOP), own, BODY))
         bodies.step([left for left, _ in torques], [right for _, right in torques])
-        closest = min(closest, min(math.dist(a, b) for a, b in combinations(bodies.hands(), 2)))
+        closest = min(closest, *(math.dist(a, b) for a, b in combinations(bodies.hands(), 2)))
     assert closest > 0.6

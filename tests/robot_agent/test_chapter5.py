@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from deploy.memory_run import MemorySwarm, run_in_memory
 from protocol.scenario import Scenario
-from protocol.scenario.laws import Repulsion
 from protocol.scenario.load import load_scenario
 from robot_agent.algorithms import ALGORITHMS
 from robot_agent.control.consensus_laws import (
@@ -22,7 +21,6 @@ from robot_agent.control.consensus_laws import (
     relative,
     respond,
 )
-from robot_agent.control.repulsion import gradient_force
 from robot_agent.sig import explicit_step
 
 number = st.floats(-20, 20)
