@@ -14,7 +14,8 @@ from protocol.scenario.sections import Body
 class Own:
     """What a robot knows of its own motion at one tick, in hand coordinates, and what it senses there."""
 
-    __slots__ = ("concentration", "lever", "nu", "omega", "swing", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y", "x", "y")
+    __slots__ = ("concentration", "lever", "nu", "omega", "swing", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y",
+                 "x", "y")  # fmt: skip
 
     def __init__(self, reading: Reading, body: Body) -> None:
         L = body.hand

@@ -35,13 +35,14 @@ BLEND = 0.05  # m: nearer than gap + BLEND s(r) goes on as a straight line, for 
 def apart(own: Own, others: Iterable[Placed], potential: Repulsion) -> list[tuple[float, Plane]]:
     """The conditions of the robots in reach, each as h, m/s, and a half plane for u_i."""
     gap, a = potential.gap, potential.brake
+    reach2 = (gap + FAST * FAST / (4.0 * a)) ** 2  # s = FAST
     found = []
     for x, y, vx, vy in others:
         dx, dy = own.x - x, own.y - y
+        if dx * dx + dy * dy > reach2:
+            continue
         r = max(hypot(dx, dy), 1e-6)
         s, slope = safe_speed(r, gap, a)
-        if s > FAST:
-            continue
         ex, ey = dx / r, dy / r
         wx, wy = own.vx - vx, own.vy - vy
         closing = -(wx * ex + wy * ey)
