@@ -15,7 +15,7 @@ class Wui(Table, frozen=True):
     """Wind utilisation, WUI-45 and WUII [Jatmiko 2007], on top of the tables `pso` and `cpso`."""
 
     charged: bool = True  # the intermediate velocity is that of the charged swarm, or of the plain one; INFERRED
-    sampling: Annotated[float, Meta(gt=0, le=600)] = 30.0  # s; INFERRED, as for the other swarms
+    sampling: Annotated[float, Meta(gt=0, le=600)] = 10.0  # s; INFERRED: the best of 10 and 30 s, see docs/algorithms.md
     angle: Annotated[float, Meta(gt=0, lt=180)] = 45.0  # half of the forbidden cone about downwind, deg (the name WUI-45)
     forbidden: Literal["stop", "turn"] = "turn"  # what a forbidden velocity becomes: 0, or turned to the edge; INFERRED
 
