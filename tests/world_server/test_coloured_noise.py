@@ -48,7 +48,8 @@ def test_two_half_steps_are_one_step_in_law(w: float, zeta: float, dt: float) ->
 @given(bandwidths, dampings, st.floats(1e-9, 1e3))
 def test_the_stationary_covariance_stays_for_any_step(w: float, zeta: float, dt: float) -> None:
     phi, root = transition(w, zeta, dt)
-    np.testing.assert_allclose(phi @ phi.T + root @ root.T, np.eye(2), atol=1e-12)
+    # Q[0, 0] of order tau^3 may round to 0 and takes Q[1, 0] of order tau^2 along: eps^(2/3) = 4e-11.
+    np.testing.assert_allclose(phi @ phi.T + root @ root.T, np.eye(2), atol=1e-10)
 
 
 @pytest.mark.parametrize("dt", [0.05, 0.1, 0.5])
