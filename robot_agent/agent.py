@@ -15,6 +15,7 @@ from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
 from robot_agent.interfaces import Around, Plan
 from robot_agent.neighbours import Neighbours
+from robot_agent.observer import Observer
 from robot_agent.planning.search import CrosswindSearch
 
 
@@ -24,6 +25,7 @@ class Agent:
     def __init__(self, scenario: RobotScenario) -> None:
         parts = algorithm(scenario.algorithm)
         self.robot = scenario.robot
+        self.observer: Observer | None = None
         self._s = scenario
         self._decision = parts.decision(scenario)
         self._planner = parts.planner(scenario)
@@ -43,6 +45,11 @@ class Agent:
     def decision_due(self) -> bool:
         """Whether the tick that was sensed last is one of decision."""
         return self._own is not None and self._own.tick % self._ticks_per_decision == 0
+
+    @property
+    def fuses(self) -> bool:
+        """Whether its decision filters and fuses (3.26)."""
+        return self._decision.fuses
 
     @property
     def estimate(self) -> tuple[float, float] | None:
@@ -66,7 +73,7 @@ class Agent:
             if not self._begun and not self._group.started:
                 self._plan = self._search.plan(own, self._group)
         group, (fusion_x, fusion_y), (h_x, h_y) = self._group, self._decision.state, self._decision.h
-        return Shared(
+        shared = Shared(
             self.robot,
             own.tick,
             own.x,
@@ -91,6 +98,9 @@ class Agent:
             self._decision.notes(own) if self._begun else (),
             group.best_at,
         )
+        if self.observer is not None:
+            self.observer.told(shared)
+        return shared
 
     def act(self, heard: Iterable[Shared]) -> Drive:
         """Take the neighbours' states of this tick; the torques to drive with until the next."""
@@ -117,7 +127,10 @@ class Agent:
             self._plan = self._search.plan(own, group)
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
-        return Drive(self.robot, own.tick, tau_left, tau_right)
+        drive = Drive(self.robot, own.tick, tau_left, tau_right)
+        if self.observer is not None:
+            self.observer.acted(heard, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)
+        return drive
 
     def belief(self, links: tuple[int, ...], dropped: int, refused: int) -> Belief:
         """What the robot thinks after `act`, for the recorder."""

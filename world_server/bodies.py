@@ -127,6 +127,11 @@ class Bodies:
         """Way of the hand so far, m."""
         return np.array([r.travelled for r in self.robots])
 
+    @property
+    def braking(self) -> tuple[bool, ...]:
+        """Which robots ignore their torques now."""
+        return tuple(self._braking)
+
     def hands(self) -> Array:
         """Hand positions (1.8):  x_i = r_i + L (cos theta, sin theta); shape (N, 2), m."""
         return np.array([(r.hand_x, r.hand_y) for r in self.robots])

@@ -17,6 +17,7 @@ from protocol.scenario import Scenario
 from world_server import sensors
 from world_server.bodies import Bodies
 from world_server.field import Field
+from world_server.observer import Observer
 from world_server.radio import Radio
 from world_server.start import start_poses
 from world_server.verdict import Found, Verdict
@@ -27,6 +28,7 @@ class World:
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
+        self.observer: Observer | None = None
         self.tick = 0
         self.dt = scenario.timing.tick
         self.live: set[int] = set(range(scenario.robots))
@@ -105,6 +107,8 @@ class World:
         self.verdict.judge(path, t0)
         self.tick += 1
         self._sense()
+        if self.observer is not None:
+            self.observer.stepped(drives, sampled=self.tick % self.ticks_per_sample == 0)
         return self.readings()
 
     def readings(self) -> list[Reading]:
@@ -121,6 +125,8 @@ class World:
                     i, k, t, b.x, b.y, b.theta, b.nu, b.omega, wind_x[i], wind_y[i], ppt[i], hears(i, k, live), history
                 )
                 readings.append(sensors.observe(exact, s.sensors, s.seed) if self._noisy else exact)
+        if self.observer is not None:
+            self.observer.told(k, readings)
         return readings
 
     def _sense(self) -> None:

@@ -23,7 +23,8 @@ class DistributedDecision(Decision):
         self._s = scenario
         self._winds = WindMemory(scenario.decision.memory)
         self.recall = scenario.decision.recall
-        self._input: Point | None = None
+        self.input: Point | None = None
+        self.fuses = True
         self._R = scenario.decision.sigma2
         self._k = 0  # decisions since the start of the mission
         self.state: Point = (0.0, 0.0)
@@ -54,7 +55,7 @@ class DistributedDecision(Decision):
             z = measure(own.x, own.y, sums, d, self._s.arena, (self.estimate.x, self.estimate.y))
         self.estimate = kalman.update(kalman.predict(self.estimate, d.process_noise), z, self._R)
         measured = z is not None or self._s.fusion.input == "always"
-        self._input = (self.estimate.x, self.estimate.y) if measured else None
+        self.input = (self.estimate.x, self.estimate.y) if measured else None
         p_hat = self._oscillation_centre(group)
         c1, c2 = d.c1, 1.0 - d.c1
         self.h = (c1 * self.state[0] + c2 * p_hat[0], c1 * self.state[1] + c2 * p_hat[1])
@@ -64,7 +65,7 @@ class DistributedDecision(Decision):
     def advance(self, fresh: Fresh, dt: float) -> None:
         # A neighbour that has not heard of the first detection has no fusion state yet.
         others = [(a_ij, s.fusion_x, s.fusion_y) for a_ij, s in fresh if s.first_detected_at >= 0.0]
-        self.state = fusion.step(self.state, others, self._input, self._s.fusion, self._s.max_degree, dt)
+        self.state = fusion.step(self.state, others, self.input, self._s.fusion, self._s.max_degree, dt)
 
     def _oscillation_centre(self, group: Group) -> Point:
         """p_hat_i = (alpha_1 x_l + alpha_2 x_g) / (alpha_1 + alpha_2), (2.4); x_g alone before an own detection."""
