@@ -12,13 +12,16 @@ from dataclasses import dataclass
 
 from protocol import keys
 from protocol.bus import Delivery, Lost
+from protocol.history.file import Histories
 from protocol.memory_bus import MemoryBus, MemoryNetwork
 from protocol.messages import Drive, Event, Halt, Outcome, Reading, Report, Shared
 from protocol.scenario import Scenario, robot_view
 from robot_agent.agent import Agent
+from robot_agent.history import RobotHistory
 from robot_agent.report import report
 from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
+from world_server.history import WorldHistory
 from world_server.outcome import outcome
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.world import World
@@ -51,8 +54,18 @@ class _Robot:
 class MemorySwarm:
     """World and robots of one run in memory, stepped from outside; faults are injected between the steps."""
 
-    def __init__(self, scenario: Scenario, *, wire: bool = False, tell: Callable[[Event], None] | None = None) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        *,
+        wire: bool = False,
+        tell: Callable[[Event], None] | None = None,
+        history: Histories | None = None,
+        run: str = "memory",
+    ) -> None:
         self.scenario = scenario
+        self.run = run
+        self._histories = history
         n = scenario.robots
         links = [(keys.WORLD, keys.robot_name(i)) for i in range(n)]
         links += sorted({(keys.robot_name(min(i, j)), keys.robot_name(max(i, j))) for i, j, _ in scenario.graph})
@@ -63,13 +76,20 @@ class MemorySwarm:
         self.robots = {i: self._robot(i) for i in range(n)}
         send = {i: self.bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
         halt = self.bus.publisher(keys.HALT, reliable=True)
-        self.session = WorldSession(World(scenario), send, halt, tell or (lambda _: None))
+        world = World(scenario)
+        self.history = WorldHistory(world, run, history.member(keys.WORLD)) if history else None
+        if self.history is not None:
+            halt = self.history.halting(halt)
+        self.session = WorldSession(world, send, halt, tell or (lambda _: None))
 
     def _robot(self, i: int) -> _Robot:
         view = robot_view(self.scenario, i)
         bus = self.network.join(keys.robot_name(i))
         wires = wire(bus, view)
-        return _Robot(bus, RobotSession(Agent(view), wires.tell, wires.drive), wires.report)
+        agent = Agent(view)
+        if self._histories is not None:
+            RobotHistory(agent, self.run, self._histories.member(keys.robot_name(i)))
+        return _Robot(bus, RobotSession(agent, wires.tell, wires.drive), wires.report)
 
     def start(self) -> None:
         """Send the first readings."""
@@ -117,6 +137,7 @@ def run_in_memory(
     wire: bool = False,
     observe: Callable[[MemorySwarm], bool] | None = None,
     tell: Callable[[Event], None] | None = None,
+    history: Histories | None = None,
 ) -> Outcome:
     """Run `scenario` to its end.
 
@@ -124,8 +145,9 @@ def run_in_memory(
         wire: send every message through the codec, as over Zenoh.
         observe: called after every tick; False ends the run as interrupted.
         tell: called with every event.
+        history: where every member writes down what it did (`protocol.history.file`); the caller closes it.
     """
-    swarm = MemorySwarm(scenario, wire=wire, tell=tell)
+    swarm = MemorySwarm(scenario, wire=wire, tell=tell, history=history, run=run)
     session = swarm.session
     start = time.perf_counter()
     swarm.start()
@@ -133,4 +155,7 @@ def run_in_memory(
         swarm.tick()
         if observe is not None and not observe(swarm):
             session.end(INTERRUPTED)
-    return outcome(session, run, time.perf_counter() - start, swarm.bus.counters)
+    ended = outcome(session, run, time.perf_counter() - start, swarm.bus.counters)
+    if swarm.history is not None:
+        swarm.history.result(ended)
+    return ended
