@@ -147,8 +147,18 @@ def _potential(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
+def _realtime(scenario: Scenario) -> Iterator[Fault]:
+    r = scenario.realtime
+    if r.catch_up >= r.late:
+        yield (
+            f"realtime.catch_up is {r.catch_up:g}; it must be less than realtime.late, which is {r.late:g}, or robots would"
+            " stop whenever the world catches up.",
+            ("realtime.catch_up", "realtime.late"),
+        )
+
+
 CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (
-    _arena, _source, _start, _timing, _drill, _network, _graph, _potential,
+    _arena, _source, _start, _timing, _drill, _network, _graph, _potential, _realtime,
 )
 
 

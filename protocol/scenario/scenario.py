@@ -14,6 +14,7 @@ from msgspec import Meta
 
 from protocol.scenario import laws
 from protocol.scenario import sections as s
+from protocol.scenario.realtime import Realtime
 from protocol.scenario.table import Count, Table
 
 Edge = tuple[int, int, float]  # (i, j, a_ij): robot i listens to robot j with weight a_ij
@@ -29,6 +30,7 @@ class Scenario(Table, frozen=True):
     preset: Literal["corrected", "literal"] = "corrected"
     case: Annotated[int, Meta(ge=0, le=9)] = 0  # of Table 4.6; 0: none
     max_time: Annotated[float, Meta(gt=0, le=1e6)] = 1000.0  # simulated s; the thesis stops at 1000 or 1500
+    clock: Literal["lockstep", "realtime"] = "lockstep"  # wait for the robots, or follow the wall clock
     graph: tuple[Edge, ...] = ()  # the edges; filled in from `topology`
     arena: s.Arena = s.Arena()
     source: s.Source = s.Source()
@@ -38,6 +40,7 @@ class Scenario(Table, frozen=True):
     body: s.Body = s.Body()
     start: s.Start = s.Start()
     timing: s.Timing = s.Timing()
+    realtime: Realtime = Realtime()
     search: s.Search = s.Search()
     decision: s.Decision = s.Decision()
     fusion: s.Fusion = s.Fusion()
@@ -78,7 +81,9 @@ class RobotScenario(Table, frozen=True):
     complete: bool  # everyone hears everyone: positions need no relaying
     arena: s.Arena
     body: s.Body
+    clock: Literal["lockstep", "realtime"]
     timing: s.Timing
+    realtime: Realtime
     search: s.Search
     decision: s.Decision
     fusion: s.Fusion
@@ -144,6 +149,8 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
 
 
 def scenario_digest(scenario: Scenario) -> str:
-    """16 hex digits that name all that decides the run; neither the wires nor the recording do."""
-    decisive = msgspec.structs.replace(scenario, network=s.Network(), recording=s.Recording())
+    """16 hex digits that name all that decides the run; neither the wires nor the recording do, nor real time's numbers
+    in lock-step."""
+    realtime = scenario.realtime if scenario.clock == "realtime" else Realtime()
+    decisive = msgspec.structs.replace(scenario, network=s.Network(), recording=s.Recording(), realtime=realtime)
     return blake2b(msgspec.json.encode(decisive, order="deterministic"), digest_size=8).hexdigest()

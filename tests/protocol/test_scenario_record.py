@@ -17,6 +17,7 @@ from protocol.scenario import sections as s
 from protocol.scenario.dump import dump_toml
 from protocol.scenario.load import build, load_scenario, merge
 from protocol.scenario.presets import CASES, PRESETS
+from protocol.scenario.realtime import Realtime
 from protocol.scenario.schema import convert, get_value, value_types
 from protocol.scenario.settings import Setting, read_settings
 
@@ -64,7 +65,16 @@ def changed(path: str) -> Scenario:
 @pytest.mark.parametrize("path", value_types())
 def test_the_digest_changes_with_every_value_that_decides_the_run_and_with_no_other(path: str) -> None:
     same = scenario_digest(changed(path)) == scenario_digest(Scenario())
-    assert same == path.startswith(("network.", "recording."))
+    assert same == path.startswith(("network.", "recording.", "realtime."))
+
+
+def test_the_digest_of_a_run_in_real_time_changes_with_the_speed() -> None:
+    digests = {
+        scenario_digest(Scenario(clock=clock, realtime=Realtime(speed=speed)))
+        for clock in ("lockstep", "realtime")
+        for speed in (1.0, 2.0)
+    }
+    assert len(digests) == 3
 
 
 def test_a_robot_knows_no_table_that_only_the_world_knows() -> None:
