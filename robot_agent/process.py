@@ -9,18 +9,21 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import msgspec
 
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.errors import ScenarioError, SwarmFailure
+from protocol.history.file import Histories, HistoryFolder
 from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
+from robot_agent.history import RobotHistory
 from robot_agent.report import report
 from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
@@ -55,6 +58,7 @@ class RobotProcess:
 
     run: str
     place: RobotPlace
+    history: Path | None = None  # folder to write the history into
     say: Callable[[str], None] = lambda _: None
 
     def serve(self) -> None:
@@ -76,16 +80,23 @@ class RobotProcess:
             lease_ms=lease_ms(view.network, view.robots),
             lockstep=True,
         )
+        histories = HistoryFolder(self.history) if self.history is not None else None
         try:
-            session, last_word = self._prepare(bus, view)
+            session, last_word = self._prepare(bus, view, histories)
             self._link_up(bus, view)
             self._take_part(bus, session, last_word)
         finally:
             bus.close()
+            if histories is not None:
+                histories.close()
 
-    def _prepare(self, bus: Bus, view: RobotScenario) -> tuple[RobotSession, Callable[[Report], None]]:
+    def _prepare(
+        self, bus: Bus, view: RobotScenario, histories: Histories | None
+    ) -> tuple[RobotSession, Callable[[Report], None]]:
         wires = wire(bus, view)
         agent = Agent(view)
+        if histories is not None:
+            RobotHistory(agent, self.run, histories.member(keys.robot_name(view.robot)))
         belief = keys.robot(view.robot, keys.BELIEF)
         watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
         return RobotSession(agent, wires.tell, watched.drive), wires.report

@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 import msgspec
 
 from protocol import keys
+from protocol.bus import Publish
 from protocol.history.records import VERSION, Begin, Moved, Record, Result, Told, Verdict
-from protocol.messages import Drive, Halt, Outcome, Reading
+from protocol.messages import Drive, Halt, Message, Outcome, Reading
 from world_server.world import World
 
 
@@ -46,11 +47,12 @@ class WorldHistory:
         hears = tuple([(r.robot, tuple([(j, tick - k) for j, k in r.hears])) for r in readings])
         self._write(Told(tick, hears))
 
-    def halting(self, halt: Callable[[Halt], None]) -> Callable[[Halt], None]:
+    def halting(self, halt: Publish) -> Publish:
         """`halt`, with the verdict written down before it is said."""
 
-        def write_and_halt(message: Halt) -> None:
-            self._write(Verdict(message.tick, message.reason))
+        def write_and_halt(message: Message) -> None:
+            if isinstance(message, Halt):
+                self._write(Verdict(message.tick, message.reason))
             halt(message)
 
         return write_and_halt

@@ -10,17 +10,20 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import gcd
+from pathlib import Path
 
 import msgspec
 
 from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
+from protocol.history.file import Histories, HistoryFolder
 from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
 from protocol.scenario import Scenario, lease_ms
 from protocol.scenario.place import place_of
 from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
+from world_server.history import WorldHistory
 from world_server.outcome import outcome
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
@@ -41,6 +44,7 @@ class WorldProcess:
     endpoints: tuple[str, ...]  # the world's, then each robot's
     recorder: bool = False  # wait for a recorder before the start
     launcher: bool = False  # wait for a launcher before the start, and for it to take the outcome
+    history: Path | None = None  # folder to write the history into
     say: Callable[[str], None] = lambda _: None
 
     def serve(self) -> Outcome:
@@ -59,12 +63,15 @@ class WorldProcess:
             lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
             lockstep=True,
         )
+        histories = HistoryFolder(self.history) if self.history is not None else None
         try:
-            return self._serve(bus)
+            return self._serve(bus, histories)
         finally:
             bus.close()
+            if histories is not None:
+                histories.close()
 
-    def _serve(self, bus: Bus) -> Outcome:
+    def _serve(self, bus: Bus, histories: Histories | None) -> Outcome:
         n = self.scenario.robots
         for i in range(n):
             bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
@@ -80,6 +87,9 @@ class WorldProcess:
 
         # The robots link up among themselves while the plume is warmed up here.
         world = World(self.scenario)
+        history = WorldHistory(world, self.run, histories.member(keys.WORLD)) if histories is not None else None
+        if history is not None:
+            halt = history.halting(halt)
         session = WorldSession(world, send, halt, tell)
         self._gather(bus)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
@@ -95,6 +105,8 @@ class WorldProcess:
             telemetry.tick(last=True)
         self._collect_reports(bus, session)
         ended = outcome(session, self.run, wall_s, bus.counters)
+        if history is not None:
+            history.result(ended)
         result(ended)
         self._farewell(bus)
         return ended

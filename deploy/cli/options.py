@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from protocol.errors import OdourswarmError, ScenarioError
+from protocol.history.file import refuse_used
 from protocol.scenario import Scenario
 from protocol.scenario.load import Override, load_scenario, parse_setting
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
@@ -39,6 +40,22 @@ def read_scenario(
         overrides.append(("wind.speed", wind, "--wind"))
     overrides += [(name, value, "--" + name.replace("_", "-")) for name, value in flags.items() if value is not None]
     return load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+
+
+def prepare_history(folder: Path, *, new: bool = True) -> None:
+    """Make the folder of `--history`.
+
+    Args:
+        new: whether it must be without histories; a member by hand may find those of others there.
+    Raises: ScenarioError when it is not to be used.
+    """
+    if new:
+        refuse_used(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ScenarioError(f"--history is {folder}; the folder cannot be made ({reason}).") from None
 
 
 def complain(error: Exception | str) -> None:

@@ -12,7 +12,7 @@ import typer
 from typer import Argument, Option
 
 from deploy.cli.advice import advice
-from deploy.cli.options import INTERRUPTED, complain, read_scenario
+from deploy.cli.options import INTERRUPTED, complain, prepare_history, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
 from protocol.scenario import Scenario
@@ -35,6 +35,9 @@ def run(
     bus: Annotated[str, Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
     record: Annotated[Path | None, Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
     view: Annotated[bool, Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
+    history: Annotated[
+        Path | None, Option("--history", metavar="DIR", help="Everyone writes down what it did, for `check`.")
+    ] = None,
     json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else.")] = False,
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
@@ -42,6 +45,8 @@ def run(
         _choice("--clock", clock, ("lockstep",))
         _choice("--bus", bus, ("zenoh", "memory"))
         _writable(record)
+        if history is not None:
+            prepare_history(history)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
             topology=topology, wind=wind, seed=seed, max_time=max_time,
@@ -54,7 +59,7 @@ def run(
     signal.signal(signal.SIGTERM, _terminate)
     name = f"run-{secrets.token_hex(4)}"
     try:
-        outcome = _execute(name, scenario, bus, record, view, quiet=json)
+        outcome = _execute(name, scenario, bus, record, view, history, quiet=json)
     except SwarmFailure as error:
         complain(error)
         raise typer.Exit(EXIT_FAILED) from None
@@ -65,17 +70,19 @@ def run(
     raise typer.Exit(EXIT_FAILED if outcome.failed else 0)
 
 
-def _execute(name: str, scenario: Scenario, bus: str, record: Path | None, view: bool, *, quiet: bool) -> Outcome:
+def _execute(
+    name: str, scenario: Scenario, bus: str, record: Path | None, view: bool, history: Path | None, *, quiet: bool
+) -> Outcome:
     from deploy.cli.progress import Display
 
     with Display(scenario, quiet=quiet) as display:
         if bus == "memory":
             from deploy.memory_watch import run_watched
 
-            return run_watched(name, scenario, display, record, view=view)
+            return run_watched(name, scenario, display, record, view=view, history=history)
         from deploy.launch.swarm import SwarmRun
 
-        return SwarmRun(name, scenario, record, view).execute(display)
+        return SwarmRun(name, scenario, record, view, history).execute(display)
 
 
 def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: bool) -> None:

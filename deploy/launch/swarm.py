@@ -41,6 +41,7 @@ class SwarmRun:
     scenario: Scenario
     record: Path | None = None
     view: bool = False
+    history: Path | None = None  # folder for the members' histories
     truth: Callable[[Truth], None] | None = None  # told of the robots as they are, as often as `recording` says; best effort
     children: Children | None = None  # while and after it runs
 
@@ -71,15 +72,16 @@ class SwarmRun:
         (folder / "scenario.json").write_bytes(msgspec.json.encode(scenario))
         (folder / "endpoints.json").write_bytes(msgspec.json.encode(endpoints))
         recorded = self.record is not None or self.view
+        history = ["--history", str(self.history)] if self.history is not None else []
         children.start(
             keys.WORLD,
             "world_server",
-            ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else [])],
+            ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else []), *history],
         )
         for i in range(n):
             place = folder / f"place-{i}.json"
             place.write_bytes(msgspec.json.encode(place_of(scenario, i, endpoints)))
-            children.start(keys.robot_name(i), "robot_agent", ["--run", self.run, "--place", str(place)])
+            children.start(keys.robot_name(i), "robot_agent", ["--run", self.run, "--place", str(place), *history])
         if recorded:
             output = ["--record", str(self.record)] if self.record is not None else []
             children.start(
