@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from math import dist
 
 from protocol.errors import ScenarioError
+from protocol.scenario.faults.check import faults_in
 from protocol.scenario.scenario import Scenario, robots_per_column
 from protocol.scenario.settings import placed
 from protocol.topology.graph import fault_in
@@ -157,8 +158,13 @@ def _realtime(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
+def _faults(scenario: Scenario) -> Iterator[Fault]:
+    edges = {(i, j) for i, j, _ in scenario.graph}
+    yield from faults_in(scenario.faults, scenario.robots, edges, scenario.timing.tick)
+
+
 CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (
-    _arena, _source, _start, _timing, _drill, _network, _graph, _potential, _realtime,
+    _arena, _source, _start, _timing, _drill, _network, _graph, _faults, _potential, _realtime,
 )
 
 

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import json
 
+from msgspec import structs
+
+from protocol.scenario.faults import Fault
 from protocol.scenario.presets import PRESETS, case_values
 from protocol.scenario.scenario import Scenario
 from protocol.scenario.schema import get_value, value_types
@@ -53,6 +56,11 @@ def _graph_is_needed(scenario: Scenario) -> bool:
     return not same_size or build(scenario.topology, scenario.robots).edges != scenario.graph
 
 
+def _inline(value: object) -> str:
+    """A value in one line, as an inline table needs it."""
+    return "[" + ", ".join(map(_inline, value)) + "]" if isinstance(value, tuple) else _toml(value)
+
+
 def _toml(value: object) -> str:
     match value:
         case bool():
@@ -61,7 +69,11 @@ def _toml(value: object) -> str:
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case int() | float():
             return repr(value)
-        case tuple() if value and isinstance(value[0], tuple):
+        case Fault():
+            given = [(each.name, getattr(value, each.name), each.default) for each in structs.fields(value)]
+            pairs = [("kind", value.__struct_config__.tag), *((name, v) for name, v, default in given if v != default)]
+            return "{" + ", ".join(f"{name} = {_inline(v)}" for name, v in pairs) + "}"
+        case tuple() if value and isinstance(value[0], tuple | Fault):
             return "[\n" + "".join(f"    {_toml(each)},\n" for each in value) + "]"
         case tuple():
             return "[" + ", ".join(_toml(each) for each in value) + "]"

@@ -15,6 +15,7 @@ from msgspec import inspect
 from protocol.scenario import RobotScenario, Scenario, linked_to, robot_view, scenario_digest
 from protocol.scenario import sections as s
 from protocol.scenario.dump import dump_toml
+from protocol.scenario.faults import Crash, Loss
 from protocol.scenario.load import build, load_scenario, merge
 from protocol.scenario.presets import CASES, PRESETS
 from protocol.scenario.realtime import Realtime
@@ -47,6 +48,7 @@ def another(path: str) -> Any:
         "drill.centre": (1.0, 2.0),
         "drill.radii": (1.0, 2.0),
         "network.endpoints": ("tcp/127.0.0.1:7447",),
+        "faults": (Loss(probability=0.3, edges=((0, 1),)), Crash(robot=1, at=3.0)),
     }[path]
 
 
