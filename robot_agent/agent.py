@@ -1,7 +1,8 @@
 """One robot: from a reading to what it tells its neighbours, and from what it hears to what it drives.
 
-Rules: pure; a tick is `sense(reading)` and then `act(heard)`, in this order, once each. The same object runs in a
-process of its own over Zenoh and beside others in memory, bit for bit alike.
+Rules: pure; a tick is `sense(reading)` and then `act(heard)`, in this order, once each. In real time ticks may be
+missing, then a decision is due at the first tick after its instant, and the exchange of the missing ticks is missing,
+too. The same object runs in a process of its own over Zenoh and beside others in memory, bit for bit alike.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ class Agent:
 
     @property
     def decision_due(self) -> bool:
-        """Whether the tick that was sensed last is one of decision."""
-        return self._own is not None and self._own.tick % self._ticks_per_decision == 0
+        """Whether the tick that was sensed last is one of decision, or the first one after readings that were missed."""
+        return self._own is not None and self._own.due(self._ticks_per_decision)
 
     @property
     def fuses(self) -> bool:
@@ -59,7 +60,7 @@ class Agent:
 
     def sense(self, reading: Reading) -> Shared:
         """Take a reading; what to tell the neighbours at this tick."""
-        own = self._own = Own(reading, self._s.body)
+        own = self._own = Own(reading, self._s.body, None if self._own is None else self._own.tick)
         if reading.wind_past:
             self._decision.prefill(reading)
         if self.decision_due:

@@ -98,7 +98,7 @@ class FtmcsControl(Controller):
 
     def _smell_now(self, own: Own, fresh: Fresh) -> None:
         """Remember the latest meeting with the odour in the group: it travels from neighbour to neighbour."""
-        if own.concentration > self._threshold and own.tick % self._ticks_per_decision == 0:
+        if own.concentration > self._threshold and own.due(self._ticks_per_decision):
             self._own_smell = own.t
             self._smell = max(self._smell, (own.t, own.x, own.y))
         for _, s in fresh:
