@@ -40,6 +40,7 @@ class Reading(Message, frozen=True, array_like=True, gc=False):
     concentration: Number  # ppt
     hears: Annotated[tuple[tuple[int, int], ...], RECORDS] = ()  # lock-step: the (neighbour, tick) states to wait for
     wind_past: Annotated[tuple[tuple[Number, Number], ...], RECORDS] = ()  # tick 0: wind before the start, oldest first
+    slip: Number = 0.0  # real time: by how much the world's schedule has moved on the wall clock, s
 
 
 class Shared(Message, frozen=True, array_like=True, gc=False):
@@ -181,6 +182,10 @@ class Outcome(Message, frozen=True, array_like=True, gc=False):
     ended: str  # "found" | "time out" | "interrupted" | a failure, as a sentence
     failed: bool  # processes failed beyond what the scenario planned
     first_detection: Number | None  # s
+    clock: str = "lockstep"  # or "realtime": such a run does not repeat, its digest only names it
+    missed: tuple[int, ...] = ()  # real time: control periods without an answer, per robot
+    behind: Number = 0.0  # real time: furthest that the world was behind the wall clock, s
+    slip: Number = 0.0  # real time: by how much it gave up to catch up, s
 
 
 class Ask(Message, frozen=True, array_like=True, gc=False):
