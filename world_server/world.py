@@ -17,6 +17,7 @@ from protocol.scenario import Scenario
 from world_server import sensors
 from world_server.bodies import Bodies
 from world_server.field import Field
+from world_server.links import Links
 from world_server.observer import Observer
 from world_server.radio import Radio
 from world_server.start import start_poses
@@ -32,7 +33,8 @@ class World:
         self.tick = 0
         self.dt = scenario.timing.tick
         self.live: set[int] = set(range(scenario.robots))
-        self.radio = Radio(scenario)
+        self.links = Links(scenario)
+        self.radio = Radio(scenario, self.links)
         poses = start_poses(scenario)
         self.bodies = Bodies(scenario.body, scenario.timing, poses[:, 0], poses[:, 1], poses[:, 2])
         hands = self.bodies.hands()
@@ -114,6 +116,7 @@ class World:
     def readings(self) -> list[Reading]:
         """What the live robots sense now."""
         s, k, t = self.scenario, self.tick, self.t
+        self.links.advance(k, self.bodies.hands)
         live, hears, (wind_x, wind_y), ppt = self.live, self.radio.hears, self._wind, self.concentration
         history: tuple[tuple[float, float], ...] = ()
         readings = []
