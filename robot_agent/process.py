@@ -24,6 +24,8 @@ from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
 from robot_agent.history import RobotHistory
+from robot_agent.realtime import RealtimePart, realtime_session
+from robot_agent.realtime_session import RealtimeRobotSession
 from robot_agent.report import report
 from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
@@ -77,14 +79,18 @@ class RobotProcess:
             token_of(self.run),
             listen=(self.place.robots[view.robot],),
             connect=connect,
-            lease_ms=lease_ms(view.network, view.robots),
-            lockstep=True,
+            lease_ms=lease_ms(view.network, view.robots, view.clock),
+            lockstep=view.clock == "lockstep",
         )
         histories = HistoryFolder(self.history) if self.history is not None else None
         try:
             session, last_word = self._prepare(bus, view, histories)
             self._link_up(bus, view)
-            self._take_part(bus, session, last_word)
+            if isinstance(session, RealtimeRobotSession):
+                sender = {keys.robot(j, keys.SHARED): j for j, _ in view.row}
+                RealtimePart(bus, session, sender, last_word, view.realtime.alone, self.say).take_part()
+            else:
+                self._take_part(bus, session, last_word)
         finally:
             bus.close()
             if histories is not None:
@@ -92,13 +98,15 @@ class RobotProcess:
 
     def _prepare(
         self, bus: Bus, view: RobotScenario, histories: Histories | None
-    ) -> tuple[RobotSession, Callable[[Report], None]]:
+    ) -> tuple[RobotSession | RealtimeRobotSession, Callable[[Report], None]]:
         wires = wire(bus, view)
         agent = Agent(view)
         if histories is not None:
             RobotHistory(agent, self.run, histories.member(keys.robot_name(view.robot)))
         belief = keys.robot(view.robot, keys.BELIEF)
         watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
+        if view.clock == "realtime":
+            return realtime_session(agent, view, wires.tell, watched.drive), wires.report
         return RobotSession(agent, wires.tell, watched.drive), wires.report
 
     def _link_up(self, bus: Bus, view: RobotScenario) -> None:

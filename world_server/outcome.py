@@ -7,6 +7,7 @@ from math import hypot
 from protocol.bus import Counters
 from protocol.messages import Outcome
 from protocol.scenario import scenario_digest
+from world_server.realtime_session import RealtimeWorldSession
 from world_server.session import FOUND, INTERRUPTED, TIME_OUT, WorldSession
 
 
@@ -53,4 +54,8 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
         ended=ended,
         failed=ended not in (FOUND, TIME_OUT, INTERRUPTED),
         first_detection=world.first_detection,
+        clock=scenario.clock,
+        missed=tuple(session.missed) if isinstance(session, RealtimeWorldSession) else (),
+        behind=session.behind if isinstance(session, RealtimeWorldSession) else 0.0,
+        slip=session.slip if isinstance(session, RealtimeWorldSession) else 0.0,
     )

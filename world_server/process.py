@@ -25,6 +25,8 @@ from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from world_server.history import WorldHistory
 from world_server.outcome import outcome
+from world_server.realtime import RealtimeWorld
+from world_server.realtime_session import RealtimeWorldSession
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
 from world_server.world import World
@@ -60,8 +62,8 @@ class WorldProcess:
             token_of(self.run),
             listen=(self.endpoints[0],),
             connect=(),
-            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
-            lockstep=True,
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots, self.scenario.clock),
+            lockstep=self.scenario.clock == "lockstep",
         )
         histories = HistoryFolder(self.history) if self.history is not None else None
         try:
@@ -78,7 +80,8 @@ class WorldProcess:
             bus.subscribe(keys.robot(i, keys.REPORT), Report)
         bus.serve(keys.SCENARIO, Ask)
         bus.serve("robot/*/join", Join)
-        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
+        lockstep = self.scenario.clock == "lockstep"
+        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=lockstep) for i in range(n)}
         halt = bus.publisher(keys.HALT, reliable=True)
         tell = bus.publisher(keys.EVENTS, reliable=False)
         truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
@@ -90,14 +93,17 @@ class WorldProcess:
         history = WorldHistory(world, self.run, histories.member(keys.WORLD)) if histories is not None else None
         if history is not None:
             halt = history.halting(halt)
-        session = WorldSession(world, send, halt, tell)
+        session = (WorldSession if lockstep else RealtimeWorldSession)(world, send, halt, tell)
         self._gather(bus)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
         watched = self.recorder or bus.matched(keys.TRUTH, ())
         telemetry = Telemetry(world, truth, field) if watched else None
         start = time.perf_counter()
         try:
-            self._run(bus, session, telemetry, progress)
+            if isinstance(session, RealtimeWorldSession):
+                RealtimeWorld(bus, session, telemetry, progress, lambda asked: self._answer(asked, set())).run()
+            else:
+                self._run(bus, session, telemetry, progress)
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start

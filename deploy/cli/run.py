@@ -31,7 +31,10 @@ def run(
     max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
     preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
     setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
-    clock: Annotated[str, Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
+    clock: Annotated[
+        str | None, Option("--clock", help="lockstep: as fast as the machine goes; realtime: nobody is waited for.")
+    ] = None,
+    speed: Annotated[float | None, Option("--speed", metavar="F", help="Real time: simulated s per s.")] = None,
     bus: Annotated[str, Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
     record: Annotated[Path | None, Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
     view: Annotated[bool, Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
@@ -42,15 +45,15 @@ def run(
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
     try:
-        _choice("--clock", clock, ("lockstep",))
         _choice("--bus", bus, ("zenoh", "memory"))
         _writable(record)
         if history is not None:
             prepare_history(history)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
-            topology=topology, wind=wind, seed=seed, max_time=max_time,
+            topology=topology, wind=wind, seed=seed, max_time=max_time, clock=clock, speed=speed,
         )  # fmt: skip
+        _fits(scenario, bus, speed)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -99,6 +102,13 @@ def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: b
 def _choice(flag: str, value: str, allowed: tuple[str, ...]) -> None:
     if value not in allowed:
         raise ScenarioError(f'{flag} is "{value}"; it must be {" or ".join(allowed)}.')
+
+
+def _fits(scenario: Scenario, bus: str, speed: float | None) -> None:
+    if scenario.clock == "realtime" and bus == "memory":
+        raise ScenarioError('--bus is "memory", and the clock is realtime; one process runs in lock-step only: --bus zenoh.')
+    if scenario.clock == "lockstep" and speed is not None:
+        raise ScenarioError(f"--speed is {speed:g}, and lock-step goes as fast as the machine; add --clock realtime.")
 
 
 def _writable(record: Path | None) -> None:

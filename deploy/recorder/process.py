@@ -49,7 +49,7 @@ class RecorderProcess:
             token_of(self.run),
             listen=(),
             connect=self.endpoints,
-            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots, self.scenario.clock),
         )
         try:
             for key, kind in (

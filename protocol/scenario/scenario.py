@@ -14,8 +14,8 @@ from msgspec import Meta
 
 from protocol.scenario import laws
 from protocol.scenario import sections as s
-from protocol.scenario.graph_options import GraphOptions
 from protocol.scenario.faults import AnyFault, OwnFault
+from protocol.scenario.graph_options import GraphOptions
 from protocol.scenario.realtime import Realtime
 from protocol.scenario.stage import Edge, RowStage, Stage
 from protocol.scenario.table import Count, Table
@@ -126,9 +126,11 @@ def robots_per_column(scenario: Scenario) -> int:
     return max(1, int((scenario.arena.y_max - start.y) // start.spacing) + 1)
 
 
-def lease_ms(network: s.Network, robots: int) -> int:
+def lease_ms(network: s.Network, robots: int, clock: str) -> int:
     """After how long a silent link is dead, ms: `network.lease_ms`, and longer for more than ten robots, which share a
-    machine's processors and would otherwise lose each other while they start."""
+    machine's processors and would otherwise lose each other while they start. In real time who is lost comes back."""
+    if clock == "realtime":
+        return network.lease_ms
     return max(network.lease_ms, network.lease_ms * robots // 10)
 
 
