@@ -11,7 +11,7 @@ from __future__ import annotations
 from zlib import crc32
 
 import msgspec
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from protocol.messages import Shared
 
@@ -107,5 +107,6 @@ _encode = msgspec.msgpack.Encoder().encode
 
 
 def content_of(shared: Shared) -> int:
-    """32 bits that name the content of a state: the check sum of its wire form."""
-    return crc32(_encode(shared))
+    """32 bits that name the content of a state: the check sum of its wire form without its notes, which in real time a
+    robot that missed them is given with the next state."""
+    return crc32(_encode(structs.replace(shared, notes=()) if shared.notes else shared))
