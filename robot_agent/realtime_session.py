@@ -2,9 +2,9 @@
 
 Rules: no clock, no socket; messages go in by `take_*`, the time is an argument of `respond`. The newest reading counts,
 older ones are skipped: control periods that were missed. A robot whose reading is late keeps a safe stop: it tells and
-drives nothing, so that its neighbours forget it and the world brakes it. Of the neighbours whom the reading lets it
-hear it uses the newest state each has sent; how old one may be is the agent's business (`timing.stale_after`). What is
-late, double or out of place is counted and dropped; nothing raises.
+drives nothing, so that its neighbours forget it and the world brakes it. Of each neighbour it uses the newest state that
+the radio lets through; how old that may be is the agent's business (`timing.stale_after`). What is late, double or out
+of place is counted and dropped; nothing raises.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ import msgspec
 from protocol.messages import Drive, Reading, Shared
 from robot_agent.agent import Agent
 from robot_agent.lateness import Lateness
-
-MAX_HEARD = 4096  # states kept between two readings
+from robot_agent.reception import Reception
 
 
 class RealtimeRobotSession:
@@ -49,11 +48,10 @@ class RealtimeRobotSession:
         self._late = late
         self._ahead = ahead
         self._lateness = Lateness(period)
+        self._reception = Reception()
         self._pending: Reading | None = None
         self._wind_past: tuple[tuple[float, float], ...] = ()  # told with the first reading, which may be skipped
         self._answered = -1  # tick of the last reading that was used
-        self._heard: list[Shared] = []  # since then
-        self._newest: dict[int, int] = {}  # neighbour -> tick of its newest state
         self._notes: dict[int, tuple[float, ...]] = {}  # the last that each neighbour told
 
     def take_reading(self, reading: Reading) -> None:
@@ -64,21 +62,12 @@ class RealtimeRobotSession:
         self.tick = reading.tick
         self._pending = reading
         self._wind_past = reading.wind_past or self._wind_past
+        self._reception.allow(reading)
 
     def take_shared(self, state: Shared) -> None:
         """Take a neighbour's state, for the next reading."""
-        newest = self._newest.get(state.robot, -1)
-        if state.tick == newest or state.tick > self.tick + self._ahead or len(self._heard) >= MAX_HEARD:
+        if state.tick > self.tick + self._ahead or not self._reception.take(state, self.tick):
             self.dropped += 1
-            return
-        if state.tick > newest:
-            self._newest[state.robot] = state.tick
-            if state.notes:
-                self._notes[state.robot] = state.notes
-            elif (notes := self._notes.get(state.robot)) is not None:
-                # Notes are told once a decision only; a robot that decides at other instants must not miss them.
-                state = msgspec.structs.replace(state, notes=notes)
-        self._heard.append(state)
 
     def respond(self, now: float) -> bool:
         """Answer the newest reading, if there is a new one; whether the robot drives."""
@@ -91,10 +80,17 @@ class RealtimeRobotSession:
         if self.stopped:
             self.missed += 1
             return False
-        hears = {j for j, _ in reading.hears}
-        heard, self._heard = [s for s in self._heard if s.robot in hears], []
         if self._wind_past:
             reading, self._wind_past = msgspec.structs.replace(reading, wind_past=self._wind_past), ()
         self._tell(self.agent.sense(reading))
+        heard = [self._with_notes(state) for state in self._reception.heard(reading.tick)]
         self._drive(self.agent.act(heard))
         return True
+
+    def _with_notes(self, state: Shared) -> Shared:
+        """Notes are told once a decision only; a robot that decides at another instant must not miss them."""
+        if state.notes:
+            self._notes[state.robot] = state.notes
+        elif (notes := self._notes.get(state.robot)) is not None:
+            return msgspec.structs.replace(state, notes=notes)
+        return state

@@ -20,6 +20,8 @@ from world_server.world import World
 class RealtimeWorldSession(WorldSession):
     """Drives a `World` through the ticks of a run that nobody holds up."""
 
+    waits_for_returns = False
+
     def __init__(
         self,
         world: World,
@@ -82,7 +84,7 @@ class RealtimeWorldSession(WorldSession):
         """A robot is there again: it gets readings, and its drives count."""
         world = self.world
         if self.ended is None and 0 <= robot < world.scenario.robots and robot not in world.live:
-            world.live.add(robot)
+            world.admit(robot)
             text = f"robot {robot} is back at {world.t:.2f} s"
             self.faults.append(text)
             self.tell(text, robot)
