@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from protocol import keys
-from protocol.bus import Delivery, Lost
+from protocol.bus import Delivery, Lost, Seen
 from protocol.history.file import Histories
 from protocol.memory_bus import MemoryBus, MemoryNetwork
-from protocol.messages import Drive, Event, Halt, Outcome, Reading, Report, Shared
+from protocol.messages import Drive, Event, Halt, Inject, Linked, Outcome, Reading, Report, Resume, Shared
 from protocol.scenario import Scenario, robot_view
 from robot_agent.agent import Agent
 from robot_agent.history import RobotHistory
@@ -23,7 +23,7 @@ from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
 from world_server.history import WorldHistory
 from world_server.outcome import outcome
-from world_server.session import INTERRUPTED, WorldSession
+from world_server.session import INTERRUPTED, KILL, WorldSession
 from world_server.world import World
 
 
@@ -32,6 +32,7 @@ class _Robot:
     bus: MemoryBus
     session: RobotSession
     report: Callable[[Report], None]
+    linked: Callable[[Linked], None]
     alive: bool = True
 
     def pump(self) -> None:
@@ -45,10 +46,15 @@ class _Robot:
                     session.take_shared(message)
                 elif isinstance(message, Reading):
                     session.take_reading(message)
+                elif isinstance(message, Resume):
+                    session.resume(message.tick)
+                    self.linked(Linked(message.robot, message.tick, session.agent.scenario.linked))
                 elif isinstance(message, Halt):
                     self.report(report(session, self.bus.counters))
             elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None:
                 session.lose(lost)
+            elif isinstance(event, Seen) and (seen := keys.robot_of(event.name)) is not None:
+                session.see(seen)
 
 
 class MemorySwarm:
@@ -73,14 +79,16 @@ class MemorySwarm:
         self.bus = self.network.join(keys.WORLD)
         self.bus.subscribe("robot/*/drive", Drive)
         self.bus.subscribe("robot/*/report", Report)
+        self.bus.subscribe("robot/*/linked", Linked)
         self.robots = {i: self._robot(i) for i in range(n)}
         send = {i: self.bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
+        resume = {i: self.bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in range(n)}
         halt = self.bus.publisher(keys.HALT, reliable=True)
         world = World(scenario)
         self.history = WorldHistory(world, run, history.member(keys.WORLD)) if history else None
         if self.history is not None:
             halt = self.history.halting(halt)
-        self.session = WorldSession(world, send, halt, tell or (lambda _: None))
+        self.session = WorldSession(world, send, halt, tell or (lambda _: None), resume, self._inject)
 
     def _robot(self, i: int) -> _Robot:
         view = robot_view(self.scenario, i)
@@ -89,7 +97,7 @@ class MemorySwarm:
         agent = Agent(view)
         if self._histories is not None:
             RobotHistory(agent, self.run, self._histories.member(keys.robot_name(i)))
-        return _Robot(bus, RobotSession(agent, wires.tell, wires.drive), wires.report)
+        return _Robot(bus, RobotSession(agent, wires.tell, wires.drive), wires.report, wires.linked)
 
     def start(self) -> None:
         """Send the first readings."""
@@ -110,10 +118,15 @@ class MemorySwarm:
         self.robots[i].alive = False
         self.network.kill(keys.robot_name(i))
 
+    def _inject(self, inject: Inject) -> None:
+        """A planned crash ends the robot; one that hangs is only not spoken to."""
+        if inject.action == KILL:
+            self.kill(inject.robot)
+
     def _pump_world(self) -> bool:
         """Handle what has arrived at the world; whether anything had."""
         session, inbox = self.session, self.bus.inbox
-        any_event = bool(inbox)
+        any_event = bool(inbox) or session.idle
         while inbox:
             event = inbox.popleft()
             complete = False
@@ -123,10 +136,16 @@ class MemorySwarm:
                     complete = session.take_drive(message)
                 elif isinstance(message, Report):
                     session.take_report(message)
+                elif isinstance(message, Linked):
+                    session.take_linked(message)
+                    for robot in session.returned:
+                        session.admit(robot)
             elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None:
                 complete = session.lose(lost)
             if complete:
                 session.step()
+        if session.idle:
+            session.step()
         return any_event
 
 

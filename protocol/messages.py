@@ -93,6 +93,29 @@ class Report(Message, frozen=True, array_like=True, gc=False):
     refused: int  # malformed, foreign, from the wrong sender
 
 
+class Resume(Message, frozen=True, array_like=True, gc=False):
+    """World to a robot that does not take part at present: your next reading is that of tick `tick`; answer `Linked`."""
+
+    robot: int
+    tick: int
+
+
+class Linked(Message, frozen=True, array_like=True, gc=False):
+    """Robot to world: who of my neighbours is linked to me now. In answer to `Resume`, and whenever it changes."""
+
+    robot: int
+    tick: int  # of the `Resume` that this answers; -1: none
+    links: tuple[int, ...]
+
+
+class Inject(Message, frozen=True, array_like=True, gc=False):
+    """World to launcher: a planned fault of a robot's process is due."""
+
+    robot: int
+    tick: int
+    action: str  # "stop" (SIGSTOP) | "continue" (SIGCONT) | "kill" (SIGKILL)
+
+
 class Halt(Message, frozen=True, array_like=True, gc=False):
     """World to everyone: the run is over."""
 

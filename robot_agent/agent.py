@@ -18,6 +18,8 @@ from robot_agent.interfaces import Around, Plan
 from robot_agent.neighbours import Neighbours
 from robot_agent.observer import Observer
 from robot_agent.planning.search import CrosswindSearch
+from robot_agent.rejoin import Rejoin, at_rest
+from robot_agent.validation import Validation
 
 
 class Agent:
@@ -26,6 +28,7 @@ class Agent:
     def __init__(self, scenario: RobotScenario) -> None:
         parts = algorithm(scenario.algorithm)
         self.robot = scenario.robot
+        self.scenario = scenario
         self.observer: Observer | None = None
         self._s = scenario
         self._decision = parts.decision(scenario)
@@ -34,6 +37,9 @@ class Agent:
         self._search = CrosswindSearch(scenario)
         self._group = Group(self._decision.recall)
         self._neighbours = Neighbours(scenario)
+        self._rejoin = Rejoin(scenario)
+        self.validation = Validation(scenario, self._controller)
+        self._near2 = scenario.repulsion.d**2  # silent robots farther than that push and pull nobody, m^2
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self._own: Own | None = None
@@ -60,18 +66,23 @@ class Agent:
 
     def sense(self, reading: Reading) -> Shared:
         """Take a reading; what to tell the neighbours at this tick."""
-        own = self._own = Own(reading, self._s.body, None if self._own is None else self._own.tick)
+        before = self._own
+        own = self._own = Own(reading, self._s.body, None if before is None else before.tick)
+        if before is None:
+            self._rejoin.sense(own)
         if reading.wind_past:
             self._decision.prefill(reading)
         if self.decision_due:
             self._decision.record(own)
-            self._detected = own.concentration > self._s.decision.threshold
+            # Who does not yet know what the group knows has nothing to say to it.
+            ready = not self._rejoin.listening
+            self._detected = ready and own.concentration > self._s.decision.threshold
             if self._detected:
                 self._group.detect(own.t, own.concentration, own.x, own.y)
                 self._decision.detect(own)
-            if self._detected or self._at_once:
+            if self._detected or (self._at_once and ready):
                 self._begin(own)
-            if not self._begun and not self._group.started:
+            if ready and not self._begun and not self._group.started:
                 self._plan = self._search.plan(own, self._group)
         group, (fusion_x, fusion_y), (h_x, h_y) = self._group, self._decision.state, self._decision.h
         shared = Shared(
@@ -109,12 +120,17 @@ class Agent:
         if own is None:
             raise RuntimeError("act() needs a reading first: call sense()")
         neighbours, group = self._neighbours, self._group
-        heard = list(heard)
+        arrived = list(heard)
+        heard = self.validation.sift(own, arrived)
         neighbours.hear(own.tick, heard)
-        for state in heard:
-            group.merge(state)
         others = neighbours.others(own.tick)
-        if group.started or self._begun:
+        waits = self._rejoin.listening and not self._rejoin.hear(own, neighbours.fresh)
+        if not waits:
+            for state in heard:
+                group.merge(state)
+        if waits:
+            self._plan = at_rest(own)
+        elif group.started or self._begun or self._at_once:
             self._begin(own)
             if self.decision_due or self._plan is None:
                 self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
@@ -126,12 +142,20 @@ class Agent:
         else:
             # The heading may have changed by what was heard in this very tick.
             self._plan = self._search.plan(own, group)
+        x, y = own.x, own.y
+        others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
         drive = Drive(self.robot, own.tick, tau_left, tau_right)
         if self.observer is not None:
-            self.observer.acted(heard, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)
+            self.observer.acted(arrived, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)
         return drive
+
+    @property
+    def rejoined(self) -> int | None:
+        """The tick at which a robot that joined a running swarm had taken back what the group knows; None: it has been
+        there from the start, or it still listens."""
+        return self._rejoin.done_at
 
     def belief(self, links: tuple[int, ...], dropped: int, refused: int) -> Belief:
         """What the robot thinks after `act`, for the recorder."""
@@ -157,7 +181,7 @@ class Agent:
             heard=tuple(s.robot for _, s in self._neighbours.fresh),
             links=links,
             dropped=dropped,
-            refused=refused,
+            refused=refused + self.validation.total,
         )
 
     def _begin(self, own: Own) -> None:
@@ -165,5 +189,7 @@ class Agent:
             self._begun = True
             self._plan = None  # the search is over
             self._decision.begin(own)
+            if self._rejoin.joined_at is not None:
+                self._decision.rejoin(own, self._neighbours.fresh)
 
 
