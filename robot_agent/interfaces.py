@@ -66,6 +66,10 @@ class Decision(Protocol):
         """Someone has detected the odour for the first time (or the algorithm begins at once)."""
         ...
 
+    def rejoin(self, own: Own, fresh: Fresh) -> None:
+        """After `begin` when this robot joins a swarm that is on its way: take back what the neighbours know."""
+        return
+
     def detect(self, own: Own) -> None:
         """This robot detects the odour now."""
         return
@@ -101,6 +105,10 @@ class Controller(Protocol):
     def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
         """u_i, m/s^2."""
         ...
+
+    def believes(self, own: Own, state: Shared) -> bool:
+        """Whether a neighbour's own numbers (`Shared.virtual`) can be true (robot_agent.validation)."""
+        return True
 
     def virtual(self) -> tuple[float, ...]:
         """Own numbers to tell the neighbours at the next tick (`Shared.virtual`)."""

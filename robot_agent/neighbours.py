@@ -128,7 +128,8 @@ class Neighbours:
             j = record[0]
             if j != self._me and (j not in relayed or record[1] > relayed[j][1]):
                 relayed[j] = record
-                self._arrived[j] = tick
+                # Only places of silent robots are passed on when they are old.
+                self._arrived[j] = tick if tick - record[1] <= self._relay_ticks else record[1]
 
 
 def _record(s: Shared) -> Relayed:

@@ -20,5 +20,5 @@ def report(session: RobotSession | RealtimeRobotSession, counters: Counters) -> 
         counters.sent,
         counters.received,
         counters.dropped + session.dropped,
-        counters.refused,
+        counters.refused + session.agent.validation.total,
     )

@@ -18,6 +18,7 @@ from protocol.scenario.faults import AnyFault, OwnFault
 from protocol.scenario.graph_options import GraphOptions
 from protocol.scenario.realtime import Realtime
 from protocol.scenario.stage import Edge, RowStage, Stage
+from protocol.scenario.supervision import Supervision
 from protocol.scenario.table import Count, Table
 from protocol.scenario.trust import Trust
 
@@ -35,7 +36,6 @@ class Scenario(Table, frozen=True):
     clock: Literal["lockstep", "realtime"] = "lockstep"  # wait for the robots, or follow the wall clock
     graph: tuple[Edge, ...] = ()  # all edges that there ever are; filled in from `topology`
     schedule: tuple[Stage, ...] = ()  # which of them when; empty: all of them always. Given as [[topology]]
-    graph_options: GraphOptions = GraphOptions()
     arena: s.Arena = s.Arena()
     source: s.Source = s.Source()
     wind: s.Wind = s.Wind()
@@ -69,8 +69,10 @@ class Scenario(Table, frozen=True):
     surge: laws.Surge = laws.Surge()
     walk: laws.Walk = laws.Walk()
     drill: laws.Drill = laws.Drill()
+    graph_options: GraphOptions = GraphOptions()
     network: s.Network = s.Network()
     recording: s.Recording = s.Recording()
+    supervision: Supervision = Supervision()
     faults: tuple[AnyFault, ...] = ()  # what goes wrong, and when
 
 
@@ -117,6 +119,7 @@ class RobotScenario(Table, frozen=True):
     walk: laws.Walk
     drill: laws.Drill
     network: s.Network
+    supervision: Supervision
     faults: tuple[OwnFault, ...]  # what it acts out itself: how it lies, how its clock is wrong
 
 
@@ -174,8 +177,9 @@ def _largest_row_sum(graph: tuple[Edge, ...]) -> float:
 
 
 def scenario_digest(scenario: Scenario) -> str:
-    """16 hex digits that name all that decides the run; neither the wires nor the recording do, nor real time's numbers
-    in lock-step."""
+    """16 hex digits that name all that decides the run; neither the wires, the recording nor supervision do, nor real
+    time's numbers in lock-step."""
     realtime = scenario.realtime if scenario.clock == "realtime" else Realtime()
-    decisive = msgspec.structs.replace(scenario, network=s.Network(), recording=s.Recording(), realtime=realtime)
+    idle = {"network": s.Network(), "recording": s.Recording(), "supervision": Supervision(), "realtime": realtime}
+    decisive = msgspec.structs.replace(scenario, **idle)
     return blake2b(msgspec.json.encode(decisive, order="deterministic"), digest_size=8).hexdigest()
