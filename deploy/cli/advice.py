@@ -29,7 +29,15 @@ def _gains(scenario: Scenario, table: str) -> Iterator[str]:
     from protocol.topology.fit import fit_warning
     from protocol.topology.graph import Graph
 
+    n = scenario.robots
+    # A stage that is not connected may be mended by the others; whom the range will part nobody knows yet.
+    stages = {stage.name: Graph(n, stage.edges) for stage in scenario.schedule if not stage.range}
+    whole = Graph(n, scenario.graph)
+    graphs = {scenario.topology: whole}
+    if scenario.schedule and analyse(whole).connected:
+        graphs = {name: graph for name, graph in stages.items() if analyse(graph).connected}
     beta, gamma = (float(str(get_value(scenario, f"{table}.{name}"))) for name in ("beta", "gamma"))
-    sentence = fit_warning(analyse(Graph(scenario.robots, scenario.graph)), beta, gamma, table)
-    if sentence is not None:
-        yield f"{scenario.algorithm} on {scenario.topology}, {scenario.robots} robots: {sentence}"
+    for name, graph in graphs.items():
+        sentence = fit_warning(analyse(graph), beta, gamma, table)
+        if sentence is not None:
+            yield f"{scenario.algorithm} on {name}, {n} robots: {sentence}"
