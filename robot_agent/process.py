@@ -14,25 +14,27 @@ from pathlib import Path
 import msgspec
 
 from protocol import keys
-from protocol.bus import Bus, Delivery, Lost
+from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
+from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Resume, Shared
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
 from robot_agent.agent import Agent
 from robot_agent.history import RobotHistory
+from robot_agent.links import Links
 from robot_agent.realtime import RealtimePart, realtime_session
 from robot_agent.realtime_session import RealtimeRobotSession
 from robot_agent.report import report
 from robot_agent.session import RobotSession
-from robot_agent.wiring import wire
+from robot_agent.wiring import Wires, wire
 
 LINK_POLL = 0.01  # s between two looks at the links while the swarm comes up
 ASK_TIMEOUT = 2.0  # s for one query
 FAREWELL = 2.0  # s that a robot waits for the world to close after its report
+WORLD_BACK = 3.0  # s that a robot waits for a world that is gone: perhaps it was the robot that stood still
 
 
 def ask_place(run: str, robot: int, world: str, timeout: float) -> RobotPlace:
@@ -84,13 +86,13 @@ class RobotProcess:
         )
         histories = HistoryFolder(self.history) if self.history is not None else None
         try:
-            session, last_word = self._prepare(bus, view, histories)
+            session, wires = self._prepare(bus, view, histories)
             self._link_up(bus, view)
             if isinstance(session, RealtimeRobotSession):
                 sender = {keys.robot(j, keys.SHARED): j for j, _ in view.row}
-                RealtimePart(bus, session, sender, last_word, view.realtime.alone, self.say).take_part()
+                RealtimePart(bus, session, sender, wires.report, view.realtime.alone, self.say).take_part()
             else:
-                self._take_part(bus, session, last_word)
+                self._take_part(bus, session, wires)
         finally:
             bus.close()
             if histories is not None:
@@ -98,7 +100,7 @@ class RobotProcess:
 
     def _prepare(
         self, bus: Bus, view: RobotScenario, histories: Histories | None
-    ) -> tuple[RobotSession | RealtimeRobotSession, Callable[[Report], None]]:
+    ) -> tuple[RobotSession | RealtimeRobotSession, Wires]:
         wires = wire(bus, view)
         agent = Agent(view)
         if histories is not None:
@@ -106,8 +108,8 @@ class RobotProcess:
         belief = keys.robot(view.robot, keys.BELIEF)
         watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
         if view.clock == "realtime":
-            return realtime_session(agent, view, wires.tell, watched.drive), wires.report
-        return RobotSession(agent, wires.tell, watched.drive), wires.report
+            return realtime_session(agent, view, wires.tell, watched.drive), wires
+        return RobotSession(agent, wires.tell, watched.drive), wires
 
     def _link_up(self, bus: Bus, view: RobotScenario) -> None:
         """Wait until the declared links are the actual ones and say so to the world."""
@@ -135,12 +137,14 @@ class RobotProcess:
                 )
             time.sleep(LINK_POLL)
 
-    def _take_part(self, bus: Bus, session: RobotSession, last_word: Callable[[Report], None]) -> None:
+    def _take_part(self, bus: Bus, session: RobotSession, wires: Wires) -> None:
         halted = False
+        world_gone: float | None = None  # since when, s
+        links = Links(session, self.place.scenario.linked, wires.linked)
         sender = {keys.robot(j, keys.SHARED): j for j, _ in self.place.scenario.row}
         settle_memory()
         while True:
-            event = bus.receive(FAREWELL if halted else None)
+            event = bus.receive(FAREWELL if halted else None if world_gone is None else WORLD_BACK)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Shared):
@@ -150,20 +154,29 @@ class RobotProcess:
                         bus.counters.refused += 1
                 elif isinstance(message, Reading):
                     session.take_reading(message)
+                elif isinstance(message, Resume):
+                    links.resume(message)
                 elif isinstance(message, Halt) and not halted:
                     halted = True
                     self.say(f"the run is over: {message.reason}")
-                    last_word(report(session, bus.counters))
+                    wires.report(report(session, bus.counters))
             elif isinstance(event, Lost):
                 if event.name == keys.WORLD:
                     if halted:
                         return
-                    raise SwarmFailure(f"robot {session.agent.robot}: the world is gone at tick {session.tick}.")
-                lost = keys.robot_of(event.name)
-                if lost is not None:
-                    session.lose(lost)
+                    world_gone = time.monotonic()
+                elif (lost := keys.robot_of(event.name)) is not None:
+                    links.lost(lost)
+            elif isinstance(event, Seen):
+                if event.name == keys.WORLD and world_gone is not None:
+                    world_gone = None
+                    links.say()
+                elif (seen := keys.robot_of(event.name)) is not None:
+                    links.seen(seen)
             elif event is None and halted:
                 return
+            if world_gone is not None and time.monotonic() - world_gone >= WORLD_BACK:
+                raise SwarmFailure(f"robot {session.agent.robot}: the world is gone at tick {session.tick}.")
 
 
 @dataclass(slots=True)

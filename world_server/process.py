@@ -18,15 +18,18 @@ from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
+from protocol.messages import Answer, Ask, Drive, Join, Linked, Outcome, Progress, Report
 from protocol.scenario import Scenario, lease_ms
+from protocol.scenario.faults import Crash, Hang
 from protocol.scenario.place import place_of
 from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
+from world_server.faults.slow import Slowness
 from world_server.history import WorldHistory
 from world_server.outcome import outcome
 from world_server.realtime import RealtimeWorld
 from world_server.realtime_session import RealtimeWorldSession
+from world_server.returns import Returns
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
 from world_server.world import World
@@ -78,10 +81,13 @@ class WorldProcess:
         for i in range(n):
             bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
             bus.subscribe(keys.robot(i, keys.REPORT), Report)
+            bus.subscribe(keys.robot(i, keys.LINKED), Linked)
         bus.serve(keys.SCENARIO, Ask)
         bus.serve("robot/*/join", Join)
         lockstep = self.scenario.clock == "lockstep"
         send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=lockstep) for i in range(n)}
+        resume = {i: bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in range(n)}
+        returns = Returns(self.scenario, bus.publisher(keys.INJECT, reliable=True) if self.launcher else None)
         halt = bus.publisher(keys.HALT, reliable=True)
         tell = bus.publisher(keys.EVENTS, reliable=False)
         truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
@@ -93,7 +99,7 @@ class WorldProcess:
         history = WorldHistory(world, self.run, histories.member(keys.WORLD)) if histories is not None else None
         if history is not None:
             halt = history.halting(halt)
-        session = (WorldSession if lockstep else RealtimeWorldSession)(world, send, halt, tell)
+        session = (WorldSession if lockstep else RealtimeWorldSession)(world, send, halt, tell, resume, returns.inject)
         self._gather(bus)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
         watched = self.recorder or bus.matched(keys.TRUTH, ())
@@ -103,7 +109,7 @@ class WorldProcess:
             if isinstance(session, RealtimeWorldSession):
                 RealtimeWorld(bus, session, telemetry, progress, lambda asked: self._answer(asked, set())).run()
             else:
-                self._run(bus, session, telemetry, progress)
+                self._run(bus, session, telemetry, progress, returns)
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start
@@ -170,7 +176,12 @@ class WorldProcess:
         return Answer(True, msgspec.json.encode(place_of(self.scenario, i, self.endpoints)).decode())
 
     def _run(
-        self, bus: Bus, session: WorldSession, telemetry: Telemetry | None, progress: Callable[[Progress], None]
+        self,
+        bus: Bus,
+        session: WorldSession,
+        telemetry: Telemetry | None,
+        progress: Callable[[Progress], None],
+        returns: Returns,
     ) -> None:
         """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
         world = session.world
@@ -180,6 +191,9 @@ class WorldProcess:
         if telemetry is not None:
             batch = gcd(batch, telemetry.field_ticks)
         sender = {keys.robot(i, keys.DRIVE): i for i in range(self.scenario.robots)}
+        slow = Slowness(self.scenario)
+        if not self.launcher and any(isinstance(fault, Crash | Hang) for fault in self.scenario.faults):
+            session.tell("no launcher: robots that crash or hang as planned are only left out of the run")
         session.start()
         if telemetry is not None:
             telemetry.tick()
@@ -187,8 +201,8 @@ class WorldProcess:
         settle_memory()
         receive, counters = bus.receive, bus.counters
         while session.ended is None:
-            event = receive(None)
-            complete = False
+            event = receive(0 if session.idle else POLL if session.awaited else None)
+            complete = session.idle
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Drive):
@@ -196,17 +210,26 @@ class WorldProcess:
                         complete = session.take_drive(message)
                     else:
                         counters.refused += 1
+                elif isinstance(message, Linked) and keys.robot_of(event.key) == message.robot:
+                    session.take_linked(message)
             elif isinstance(event, Lost):
                 lost = keys.robot_of(event.name)
-                complete = lost is not None and session.lose(lost)
+                complete = (lost is not None and session.lose(lost)) or complete
+            elif isinstance(event, Seen):
+                if (seen := keys.robot_of(event.name)) in session.awaited and seen is not None:
+                    session.call(seen)
             elif isinstance(event, Asked):
                 event.answer(Answer(False, "the run has begun."))
+            if session.awaited:
+                returns.look(session)
             if complete:
                 session.step()
                 if telemetry is not None:
                     telemetry.tick()
                 if world.tick % batch == 0:
                     world.prepare(batch)
+                if pause := slow.pause(world.tick):
+                    time.sleep(pause)
                 now = time.perf_counter()
                 if now >= next_progress:
                     next_progress = now + PROGRESS_PERIOD

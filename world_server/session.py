@@ -57,7 +57,7 @@ class WorldSession:
         self._resume = resume
         self._inject = inject
         self._roster = Roster(world.scenario)
-        self._answered: set[int] = set()  # of the awaited ones
+        self.answered: set[int] = set()  # of the awaited ones, those that have answered
 
     @property
     def over(self) -> bool:
@@ -73,7 +73,7 @@ class WorldSession:
     def returned(self) -> list[int]:
         """Awaited robots that have answered and whose links are back, as both ends of each say."""
         live = self.world.live
-        return [i for i in sorted(self.awaited) if i in self._answered and self._roster.complete(i, live)]
+        return [i for i in sorted(self.awaited) if i in self.answered and self._roster.complete(i, live)]
 
     def start(self) -> None:
         """Send the readings of tick 0."""
@@ -118,6 +118,7 @@ class WorldSession:
     def lose(self, robot: int, how: str = "lost") -> bool:
         """A robot is gone; whether all live robots have answered now."""
         world = self.world
+        self.answered.discard(robot)
         if robot not in world.live or (self.ended is not None and robot in self.reports):
             return False
         world.lose(robot)
@@ -148,7 +149,7 @@ class WorldSession:
                 self.admit(robot)
                 return
             self.awaited.add(robot)
-            self._answered.discard(robot)
+            self.answered.discard(robot)
         if robot in self._resume:
             self._resume[robot](Resume(robot, self.world.tick))
 
@@ -159,7 +160,7 @@ class WorldSession:
             return
         self._roster.note(linked)
         if linked.robot in self.awaited and linked.tick == self.world.tick:
-            self._answered.add(linked.robot)
+            self.answered.add(linked.robot)
 
     def admit(self, robot: int) -> None:
         """A robot is there: it takes part from this tick on, and the tick begins when nobody else is awaited."""

@@ -16,12 +16,13 @@ from pathlib import Path
 import msgspec
 
 from deploy.launch.children import Children
+from deploy.launch.injector import Injector
 from deploy.launch.watcher import Watcher
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
-from protocol.messages import Event, Outcome, Progress, Truth
+from protocol.messages import Event, Inject, Outcome, Progress, Truth
 from protocol.scenario import Scenario
 from protocol.scenario.place import place_of
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -94,6 +95,7 @@ class SwarmRun:
             bus.subscribe(keys.PROGRESS, Progress)
             bus.subscribe(keys.EVENTS, Event)
             bus.subscribe(keys.OUTCOME, Outcome)
+            bus.subscribe(keys.INJECT, Inject)
             if self.truth is not None:
                 bus.subscribe(keys.TRUTH, Truth)
             try:
@@ -115,12 +117,16 @@ class SwarmRun:
 
     def _watch(self, bus: Bus, children: Children, watcher: Watcher) -> Outcome:
         begun = False
+        injector = Injector(children)
         while True:
             event = bus.receive(POLL)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Outcome):
+                    injector.end()
                     return message
+                if isinstance(message, Inject):
+                    injector.do(message)
                 if isinstance(message, Progress):
                     begun = True
                     watcher.progress(message)
