@@ -17,10 +17,25 @@ def advice(scenario: Scenario) -> Iterator[str]:
     parts = ALGORITHMS[scenario.algorithm]
     if parts.gains:
         yield from _gains(scenario, parts.gains)
+    if scenario.fusion.kind == "resilient":
+        yield from _liars(scenario)
     if parts.drill and scenario.plume.release_rate > 0:
         yield (
             f'"{scenario.algorithm}" is an exercise that ignores the odour, and there is a source: the run ends when a robot'
             " comes upon it. --set plume.release_rate=0 leaves it out."
+        )
+
+
+def _liars(scenario: Scenario) -> Iterator[str]:
+    from protocol.topology.graph import Graph
+    from protocol.topology.robustness import robustness
+
+    found = robustness(Graph(scenario.robots, scenario.graph))
+    if found is not None and found.liars < scenario.fusion.liars:
+        yield (
+            f"fusion.liars is {scenario.fusion.liars}, and {scenario.topology} of {scenario.robots} robots withstands"
+            f" {found.liars}: honest robots may not agree, with or without a liar. `odourswarm topology` says what a graph"
+            " withstands."
         )
 
 

@@ -38,6 +38,8 @@ def read_scenario(
         overrides += [("source.x", x, "--source"), ("source.y", y, "--source")]
     if (wind := flags.pop("wind", None)) is not None:
         overrides.append(("wind.speed", wind, "--wind"))
+    if (fusion := flags.pop("fusion", None)) is not None:
+        overrides.append(("fusion.kind", fusion, "--fusion"))
     if (speed := flags.pop("speed", None)) is not None:
         overrides.append(("realtime.speed", speed, "--speed"))
     overrides += [(name, value, "--" + name.replace("_", "-")) for name, value in flags.items() if value is not None]

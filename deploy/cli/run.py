@@ -28,6 +28,7 @@ def run(
     source: Annotated[str | None, Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,
     wind: Annotated[float | None, Option("--wind", metavar="U", help="Mean wind speed, m/s.")] = None,
     seed: Annotated[int | None, Option("--seed", help="All randomness follows from it.")] = None,
+    fusion: Annotated[str | None, Option("--fusion", help="plain (3.26), or resilient: withstands liars.")] = None,
     max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
     preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
     setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
@@ -51,7 +52,7 @@ def run(
             prepare_history(history)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
-            topology=topology, wind=wind, seed=seed, max_time=max_time, clock=clock, speed=speed,
+            topology=topology, wind=wind, seed=seed, max_time=max_time, fusion=fusion, clock=clock, speed=speed,
         )  # fmt: skip
         _fits(scenario, bus, speed)
     except ScenarioError as error:
