@@ -15,6 +15,7 @@ import msgspec
 
 from protocol.messages import Drive, Reading, Shared
 from robot_agent.agent import Agent
+from robot_agent.faults import false_sense
 from robot_agent.lateness import Lateness
 from robot_agent.reception import Reception
 
@@ -43,6 +44,7 @@ class RealtimeRobotSession:
         self.dropped = 0
         self.missed = 0  # control periods: readings that were skipped, or too late to be answered
         self.stopped = False  # in the safe stop
+        self._sense = false_sense(agent)
         self._tell = tell
         self._drive = drive
         self._late = late
@@ -82,7 +84,7 @@ class RealtimeRobotSession:
             return False
         if self._wind_past:
             reading, self._wind_past = msgspec.structs.replace(reading, wind_past=self._wind_past), ()
-        self._tell(self.agent.sense(reading))
+        self._tell(self._sense(reading))
         heard = [self._with_notes(state) for state in self._reception.heard(reading.tick)]
         self._drive(self.agent.act(heard))
         return True

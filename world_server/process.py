@@ -107,7 +107,7 @@ class WorldProcess:
         start = time.perf_counter()
         try:
             if isinstance(session, RealtimeWorldSession):
-                RealtimeWorld(bus, session, telemetry, progress, lambda asked: self._answer(asked, set())).run()
+                RealtimeWorld(bus, session, telemetry, progress, self._answer_late, self.launcher).run()
             else:
                 self._run(bus, session, telemetry, progress, returns)
         except Stop:
@@ -169,6 +169,9 @@ class WorldProcess:
                 return
             waiting.discard(i)
             asked.answer(Answer(True, ""))
+
+    def _answer_late(self, asked: Asked) -> None:
+        self._answer(asked, set())
 
     def _place(self, i: int) -> Answer:
         if not 0 <= i < self.scenario.robots:

@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from protocol import keys
 from protocol.bus import Asked, Bus, BusEvent, Delivery, Lost, Seen
 from protocol.messages import Drive, Progress
+from protocol.scenario.faults import Crash, Hang
 from protocol.shell import settle_memory
+from world_server.faults.slow import Slowness
 from world_server.pace import Pace
 from world_server.realtime_session import RealtimeWorldSession
 from world_server.telemetry import Telemetry
@@ -33,6 +35,7 @@ class RealtimeWorld:
     telemetry: Telemetry | None
     progress: Callable[[Progress], None]
     answer: Callable[[Asked], None]  # to a robot that joins late
+    launcher: bool  # there is one, to make robots crash and hang
 
     def run(self) -> None:
         """From the first reading to the end of the run."""
@@ -41,6 +44,9 @@ class RealtimeWorld:
         realtime, tick = world.scenario.realtime, world.dt
         sender = {keys.robot(i, keys.DRIVE): i for i in range(world.scenario.robots)}
         receive = self.bus.receive
+        slow = Slowness(world.scenario)
+        if not self.launcher and any(isinstance(fault, Crash | Hang) for fault in world.scenario.faults):
+            session.tell("no launcher: nobody makes robots crash or hang as planned")
         world.prepare()
         settle_memory()
         begun = clock()
@@ -65,12 +71,14 @@ class RealtimeWorld:
             if self.telemetry is not None:
                 self.telemetry.tick()
             world.prepare()
+            if pause := slow.pause(world.tick):
+                time.sleep(pause)
             if moved and now >= next_complaint:
                 next_complaint = now + COMPLAINT_PERIOD
                 session.tell(f"the world cannot keep up: it has given up {pace.slip:.3f} s of the wall clock so far")
             alone_since = None if world.live else alone_since or now
             if alone_since is not None and now - alone_since > realtime.alone:
-                session.end("all robots are gone")
+                session.give_up_alone()
             if now >= next_progress:
                 next_progress = now + PROGRESS_PERIOD
                 self.progress(Progress(world.tick, world.t, len(world.live), world.detections, world.closest))

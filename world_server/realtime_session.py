@@ -4,6 +4,9 @@ Rules: no clock, no socket; messages go in by `take_*`, the time is the world's 
 each robot counts, whatever tick it answers; one that is older than `realtime.drive_timeout` does not, and the robot
 brakes. A robot that is lost brakes, too, and takes part again when it is seen again. A control period of a robot is
 missed when no drive answers its reading before the next step. What is late or double is counted and dropped.
+
+A planned crash or hang is done to the robot's process, and nothing else: that the robot is gone, and that it is back,
+the world learns as it learns of unplanned ones.
 """
 
 from __future__ import annotations
@@ -12,9 +15,12 @@ from collections.abc import Callable, Mapping
 
 import msgspec
 
-from protocol.messages import Drive, Event, Halt, Reading
-from world_server.session import WorldSession
+from protocol.messages import Drive, Event, Halt, Inject, Reading, Resume
+from world_server.faults.plan import CRASH
+from world_server.session import ALL_STOPPED, CONTINUE, KILL, STOP, WorldSession
 from world_server.world import World
+
+_NOBODY: Mapping[int, Callable[[Resume], None]] = {}
 
 
 class RealtimeWorldSession(WorldSession):
@@ -28,8 +34,10 @@ class RealtimeWorldSession(WorldSession):
         send: Mapping[int, Callable[[Reading], None]],
         halt: Callable[[Halt], None],
         tell: Callable[[Event], None],
+        resume: Mapping[int, Callable[[Resume], None]] = _NOBODY,
+        inject: Callable[[Inject], None] = lambda _: None,
     ) -> None:
-        super().__init__(world, send, halt, tell)
+        super().__init__(world, send, halt, tell, resume, inject)
         robots, timing = range(world.scenario.robots), world.scenario.timing
         self.missed = [0 for _ in robots]  # control periods without an answer, while the robot was not known to be lost
         self.braked = [False for _ in robots]
@@ -75,19 +83,30 @@ class RealtimeWorldSession(WorldSession):
             world.lose(robot)
             self._newest.pop(robot, None)
             if self.ended is None:
-                text = f"robot {robot} {how} at {world.t:.2f} s"
-                self.faults.append(text)
-                self.tell(text, robot)
+                self._note(f"robot {robot} {how} at {world.t:.2f} s", robot)
         return False
 
     def see(self, robot: int) -> None:
         """A robot is there again: it gets readings, and its drives count."""
         world = self.world
         if self.ended is None and 0 <= robot < world.scenario.robots and robot not in world.live:
-            world.admit(robot)
-            text = f"robot {robot} is back at {world.t:.2f} s"
-            self.faults.append(text)
-            self.tell(text, robot)
+            self.admit(robot)
+
+    def suspend(self, robot: int, how: str) -> None:
+        """A planned fault is due: let it be done to the robot's process."""
+        self.stopped.add(robot)
+        self._inject(Inject(robot, self.world.tick, KILL if how == CRASH else STOP))
+
+    def call(self, robot: int) -> None:
+        """A planned hang is over: let the robot's process go on."""
+        self.stopped.discard(robot)
+        self._inject(Inject(robot, self.world.tick, CONTINUE))
+
+    def give_up_alone(self) -> None:
+        """There has been no robot for too long: the run is over, unless one is to come back."""
+        if not self.world.live and not self.plan.returns_after(self.world.tick):
+            everybody = self.stopped.issuperset(range(self.world.scenario.robots))
+            self.end(ALL_STOPPED if everybody else "all robots are gone")
 
     def _publish(self, readings: list[Reading]) -> None:
         for reading in readings:
