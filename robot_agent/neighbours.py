@@ -61,13 +61,23 @@ class Neighbours:
         """Everyone whose place is known, neighbours and relayed robots, moved on to `tick` at their last velocity."""
         placed = [self._now(tick, s.tick, s.x, s.y, s.vx, s.vy) for _, s in self.fresh]
         self.numbers = [s.robot for _, s in self.fresh]
-        if self._relayed:
+        relayed = self._with_former(tick) if self._row.switches else self._relayed
+        if relayed:
             direct = set(self.numbers)
-            for j, k, x, y, vx, vy in self._relayed.values():
+            for j, k, x, y, vx, vy in relayed.values():
                 if j not in direct and tick - k <= self._relay_ticks:
                     placed.append(self._now(tick, k, x, y, vx, vy))
                     self.numbers.append(j)
         return placed
+
+    def _with_former(self, tick: int) -> dict[int, Relayed]:
+        """The relayed states, and those of robots that were neighbours until the graph switched: nobody has passed them
+        on yet."""
+        row, known = self._row.weights(tick), dict(self._relayed)
+        for j, s in self._latest.items():
+            if j not in row and (j not in known or known[j][1] < s.tick):
+                known[j] = _record(s)
+        return known
 
     def ghosts(self, tick: int) -> list[Placed]:
         """Where the robots that fell silent stand, to the best of one's knowledge; call it after `others`."""

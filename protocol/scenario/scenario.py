@@ -155,7 +155,7 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
         seed=scenario.seed,
         algorithm=scenario.algorithm,
         row=_row(scenario.graph, i),
-        stages=tuple(RowStage(stage.at, _row(stage.edges, i), stage.range > 0.0) for stage in stages),
+        stages=tuple(RowStage(stage.at, _row(stage.edges, i)) for stage in stages),
         period=scenario.graph_options.period,
         linked=linked_to(scenario.graph, i),
         max_degree=max(_largest_row_sum(graph) for graph in graphs),

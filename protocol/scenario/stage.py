@@ -28,8 +28,7 @@ class RowStage(Table, frozen=True):
     """What one robot knows of a stage: its own row."""
 
     at: float  # s
-    row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it listens to
-    ranged: bool  # only those of them that are near enough; who that is the world alone knows
+    row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it listens to, if near enough where the stage has a range
 
 
 def stage_at(starts: Sequence[float], period: float, t: float) -> int:
