@@ -23,7 +23,7 @@ from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
 from world_server.history import WorldHistory
 from world_server.outcome import outcome
-from world_server.session import INTERRUPTED, KILL, WorldSession
+from world_server.session import CONTINUE, INTERRUPTED, KILL, WorldSession
 from world_server.world import World
 
 
@@ -118,10 +118,16 @@ class MemorySwarm:
         self.robots[i].alive = False
         self.network.kill(keys.robot_name(i))
 
+    def restart(self, i: int) -> None:
+        """Begin robot `i`, which was killed, anew; it takes part when the world has called it."""
+        self.robots[i] = self._robot(i)
+
     def _inject(self, inject: Inject) -> None:
-        """A planned crash ends the robot; one that hangs is only not spoken to."""
+        """A planned crash ends the robot, its return begins a new one; one that hangs is only not spoken to."""
         if inject.action == KILL:
             self.kill(inject.robot)
+        elif inject.action == CONTINUE and not self.robots[inject.robot].alive:
+            self.restart(inject.robot)
 
     def _pump_world(self) -> bool:
         """Handle what has arrived at the world; whether anything had."""

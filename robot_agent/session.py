@@ -30,12 +30,16 @@ class RobotSession:
         self._missing: set[tuple[int, int]] = set()
         self._gone: set[int] = set()  # neighbours that no link leads to now
         self.waiting = False  # for states of neighbours
+        self._answer: Drive | None = None  # of this tick
 
     def take_reading(self, reading: Reading) -> bool:
         """Begin the next tick; whether the tick was finished at once."""
         tick = reading.tick
         if tick != self.tick + 1 or reading.robot != self.agent.robot or self.waiting:
-            self.dropped += 1
+            if tick == self.tick and reading.robot == self.agent.robot and self._answer is not None:
+                self._drive(self._answer)  # a world that came back does not know it
+            else:
+                self.dropped += 1
             return False
         self.tick = tick
         states = self._states
@@ -49,6 +53,7 @@ class RobotSession:
         if self._gone:
             self._missing = {h for h in self._missing if h[0] not in self._gone}
         self.waiting = True
+        self._answer = None
         return False if self._missing else self._finish()
 
     def take_shared(self, state: Shared) -> bool:
@@ -95,5 +100,6 @@ class RobotSession:
         states = self._states
         heard = [states[k][j] for j, k in self._hears if k in states and j in states[k]]
         self.waiting = False
-        self._drive(self.agent.act(heard))
+        self._answer = self.agent.act(heard)
+        self._drive(self._answer)
         return True

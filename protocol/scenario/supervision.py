@@ -21,6 +21,5 @@ class Supervision(Table, frozen=True):
     max_backoff: Positive = 10.0  # s
     max_restarts: Annotated[int, Meta(ge=0, le=1000)] = 5  # of one process within `window`; then it is given up
     window: Positive = 60.0  # s
-    rejoin_within: Positive = 10.0  # a robot that is started again, or a world that is back, waits for the others, s
     checkpoint_every: NonNegative = 0.0  # simulated s between two checkpoints of the world; 0: none, it cannot come back
     world_within: Positive = 20.0  # robots wait so long for a world that has checkpoints to come back, s

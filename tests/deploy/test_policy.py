@@ -86,7 +86,7 @@ def test_never_more_restarts_within_any_window_than_allowed(gaps, most, window):
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"supervision.restart": "sometimes"}, 'supervision.restart is "sometimes"; it must be "never", "always" or "crashed"'),
+        ({"supervision.restart": "often"}, 'supervision.restart is "often"; it must be "always", "crashed" or "never"'),
         ({"supervision.backoff": 20.0}, "supervision.backoff is 20; it must be at most supervision.max_backoff"),
         ({"supervision.max_restarts": -1}, "supervision.max_restarts is -1; it must be a whole number from 0 to 1000"),
         ({"supervision.checkpoint_every": 5.0, "clock": "realtime"}, "it must be 0 with clock = \"realtime\""),

@@ -67,7 +67,7 @@ def changed(path: str) -> Scenario:
 @pytest.mark.parametrize("path", value_types())
 def test_the_digest_changes_with_every_value_that_decides_the_run_and_with_no_other(path: str) -> None:
     same = scenario_digest(changed(path)) == scenario_digest(Scenario())
-    assert same == path.startswith(("network.", "recording.", "realtime."))
+    assert same == path.startswith(("network.", "recording.", "realtime.", "supervision."))
 
 
 def test_the_digest_of_a_run_in_real_time_changes_with_the_speed() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from protocol.scenario import Scenario
-from protocol.scenario.faults import FOREVER, Crash, Hang
+from protocol.scenario.faults import FOREVER, Crash, Hang, first_tick
 
 CRASH, HANG = "crash", "hang"
 
@@ -35,6 +35,8 @@ class Plan:
             due.begun.append((getattr(fault, "robot", -1), fault.about()))
             if isinstance(fault, Crash):
                 due.stops.append((fault.robot, CRASH))
+                if fault.restart:
+                    self.add_return(max(first + 1, first_tick(fault.at + fault.restart, dt)), fault.robot)
             elif isinstance(fault, Hang) and first < end:
                 due.stops.append((fault.robot, HANG))
                 if fault.until < FOREVER:
@@ -52,6 +54,10 @@ class Plan:
     def returns_after(self, tick: int) -> bool:
         """Whether anybody is to come back after `tick`."""
         return self._last_back > tick
+
+    def returns(self, robot: int, tick: int) -> bool:
+        """Whether `robot` is to come back after `tick`."""
+        return any(at > tick and robot in due.back for at, due in self._due.items())
 
     def _at(self, tick: int) -> Due:
         return self._due.setdefault(tick, Due())
