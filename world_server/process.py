@@ -203,14 +203,15 @@ class WorldProcess:
         world.prepare(batch)
         settle_memory()
         receive, counters = bus.receive, bus.counters
+        complete = False  # all who take part have answered
         while session.ended is None:
-            event = receive(0 if session.idle else POLL if session.awaited else None)
-            complete = session.idle
+            complete = complete or session.idle
+            event = receive(0 if session.idle else POLL if complete or session.awaited else None)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Drive):
                     if sender[event.key] == message.robot:
-                        complete = session.take_drive(message)
+                        complete = session.take_drive(message) or complete
                     else:
                         counters.refused += 1
                 elif isinstance(message, Linked) and keys.robot_of(event.key) == message.robot:
@@ -225,7 +226,8 @@ class WorldProcess:
                 event.answer(Answer(False, "the run has begun."))
             if session.awaited:
                 returns.look(session)
-            if complete:
+            if complete and not returns.hold(session):
+                complete = False
                 session.step()
                 if telemetry is not None:
                     telemetry.tick()

@@ -26,3 +26,7 @@ class Roster:
         """Whether `robot` and all its declared neighbours that take part see each other."""
         mine = self._seen[robot]
         return all(j in mine and robot in self._seen[j] for j in self._declared[robot] if j in live)
+
+    def is_seen(self, robot: int, live: Container[int]) -> bool:
+        """Whether anybody who takes part is linked to `robot`."""
+        return any(j in live and robot in self._seen[j] for j in self._declared[robot])

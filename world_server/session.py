@@ -162,6 +162,10 @@ class WorldSession:
         if linked.robot in self.awaited and linked.tick == self.world.tick:
             self.answered.add(linked.robot)
 
+    def is_linked(self, robot: int) -> bool:
+        """Whether a robot that takes part still has a link to `robot`, as it says itself."""
+        return self._roster.is_seen(robot, self.world.live)
+
     def admit(self, robot: int) -> None:
         """A robot is there: it takes part from this tick on, and the tick begins when nobody else is awaited."""
         self.stopped.discard(robot)
