@@ -36,7 +36,7 @@ class WorldHistory:
             Moved(
                 world.tick,
                 tuple([(b.x, b.y, b.theta, b.nu, b.omega) for b in bodies.robots]),
-                tuple([(i, drive.tau_left, drive.tau_right) for i, drive in drives.items()]),
+                tuple([(i, drive.tau_left, drive.tau_right) for i, drive in sorted(drives.items())]),
                 tuple([i for i, held in enumerate(bodies.braking) if held]),
                 tuple([i for i in range(len(bodies.robots)) if i not in live]),
                 tuple(world.concentration) if sampled else None,
