@@ -2,17 +2,20 @@
 
 Every state that a robot heard stands in its sender's history with the same tick and the same content; every drive that
 the world took stands in its robot's history with the same torques: at the very tick in lock-step, at most
-`realtime.drive_timeout` old in real time. A robot that tells something else than it holds (fault `liar`) breaks this.
+`realtime.drive_timeout` old in real time. A robot's history says what it holds. What a planned `liar` tells while it lies
+is something else, of course; that is the business of `deploy.checkers.honesty`.
 """
 
 from __future__ import annotations
 
 from deploy.checkers.finding import Facts
 from deploy.checkers.history import History
+from protocol.scenario.faults import Liar
 
 
 def heard_was_sent(history: History) -> Facts:
     """A fact for every state heard and every drive taken."""
+    lies = [(fault.robot, *fault.ticks(history.dt)) for fault in history.scenario.faults if isinstance(fault, Liar)]
     sent = {key: {state.content for state in states} for key, states in history.sent().items()}
     drives: dict[tuple[int, int], set[tuple[float, float]]] = {}
     for life, act in history.acts():
@@ -23,7 +26,8 @@ def heard_was_sent(history: History) -> Facts:
             if contents is None:
                 yield f"{state}, but robot {j} never sent one"
             else:
-                yield None if content in contents else f"{state}, but robot {j} had sent something else"
+                lied = any(j == robot and first <= act.tick - age < end for robot, first, end in lies)
+                yield None if lied or content in contents else f"{state}, but robot {j} had sent something else"
     scenario = history.scenario
     late = round(scenario.realtime.drive_timeout / history.dt) + 1 if scenario.clock == "realtime" else 0
     for moved in history.moved:

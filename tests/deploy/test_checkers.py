@@ -8,7 +8,7 @@ from history_helpers import broken, change_act, change_moved, kept, kept_with_de
 from msgspec.structs import replace
 from swarm_helpers import near_the_plume
 
-from deploy.checkers.check import History, check_run
+from deploy.checkers.check import History, check_run, unplanned
 from protocol.history.records import Result, Verdict
 
 
@@ -271,3 +271,30 @@ def drive_harder(history: History) -> None:
 )
 def test_what_was_heard_or_driven_without_being_sent_is_seen(searched, tamper, words):
     assert words in look("conservation", tampered(searched, tamper)).counterexample
+
+
+def test_a_planned_liar_is_seen_and_breaks_no_other_promise():
+    liar = {"kind": "liar", "robot": 3, "lies": "fusion", "offset": [20.0, 0.0], "at": 1.0, "until": 2.0}
+    history, _ = kept(near_the_plume(faults=[liar], max_time=3.0))
+    assert broken(history) == {
+        "honesty": "robot 3 told robot 2 in its state of tick 20 something else than it held, heard at tick 20 (1.00 s)"
+    }
+    assert unplanned(history) == []
+    change_act(history, 0, 50, heard=((1, 0, 12345),))
+    assert "conservation" in [finding.name for finding in unplanned(history)]
+
+
+@pytest.mark.parametrize("seed", [3, 11])
+def test_faults_of_the_radio_and_of_processes_break_no_promise(seed):
+    faults = [
+        {"kind": "crash", "robot": 1, "at": 1.0, "restart": 1.0},
+        {"kind": "hang", "robot": 2, "at": 1.5, "until": 3.0},
+        {"kind": "loss", "probability": 0.2},
+        {"kind": "delay", "delay": 0.1, "jitter": 0.6},
+        {"kind": "duplicate", "probability": 0.2},
+        {"kind": "reorder", "probability": 0.2},
+    ]
+    history, _ = kept(near_the_plume(faults=faults, seed=seed, max_time=5.0))
+    assert broken(history) == {}
+    assert len(history.lives[1]) == 2
+    assert look("stopped", history).facts > 40
