@@ -69,7 +69,7 @@ def print_report(console: Console, name: str, graph: Graph, analysis: Analysis, 
 
 def _rows(analysis: Analysis, condition: Condition) -> Iterator[tuple[str, str, str]]:
     """What is printed below the picture: label, text, style."""
-    yield "eigenvalues of L", _eigenvalues(analysis), ""
+    yield "eigenvalues of L", eigenvalues(analysis), ""
     yield "λ₂", "none, there is one robot" if analysis.lambda_2 is None else f"{analysis.lambda_2:.4g}", ""
     yield "connected", yes(analysis.connected), ""
     if analysis.directed:
@@ -107,7 +107,7 @@ def plain(text: str) -> str:
     return text
 
 
-def _eigenvalues(analysis: Analysis) -> str:
+def eigenvalues(analysis: Analysis) -> str:
     """Eigenvalues in ascending order, equal ones counted."""
     words = []
     for text, group in groupby(_number(value) for value in analysis.eigenvalues):

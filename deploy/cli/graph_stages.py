@@ -112,7 +112,8 @@ def _along_a_run(scenario: Scenario) -> tuple[Sample, ...]:
 
     def look(swarm: MemorySwarm) -> bool:
         world = swarm.session.world
-        if world.tick % every == 0:
+        # The last tick is shown twice: the run is over when the last words are said.
+        if world.tick % every == 0 and not (samples and samples[-1][0] == world.t):
             links.advance(world.tick, world.bodies.hands)
             stage = stage_at(starts, scenario.graph_options.period, world.tick * dt)
             key = (stage, tuple(links.rows))

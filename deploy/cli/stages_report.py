@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from deploy.cli.graph_picture import draw
-from deploy.cli.graph_report import count, facts, plain, verdict, yes
+from deploy.cli.graph_report import count, eigenvalues, facts, plain, verdict, yes
 from deploy.cli.graph_stages import Part, Sample, Stages
 from protocol.topology.analysis import Condition, gain_condition
 
@@ -63,10 +63,13 @@ def print_stages(console: Console, name: str, stages: Stages, gains: tuple[float
         console.print(line if fine else plain(line))
     told: set[str] = set()
     for part, condition in zip(stages.parts, conditions, strict=True):
-        sentence = f"condition (5.2) on {part.stage.name}: {verdict(part.analysis, condition)}"
-        if sentence not in told:
-            told.add(sentence)
-            console.print(Text(sentence if fine else plain(sentence), "green" if condition.holds else "red"))
+        name = part.stage.name
+        lines = (f"eigenvalues of L of {name}: {eigenvalues(part.analysis)}", verdict(part.analysis, condition))
+        if lines[0] not in told:
+            told.add(lines[0])
+            console.print(lines[0] if fine else plain(lines[0]))
+            judged = f"condition (5.2) on {name}: {lines[1]}"
+            console.print(Text(judged if fine else plain(judged), "green" if condition.holds else "red"))
 
 
 def _table(stages: Stages, conditions: list[Condition], *, fine: bool) -> Table:

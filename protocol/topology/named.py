@@ -68,7 +68,7 @@ TOPOLOGIES: dict[str, Topology] = {
     "line": Topology(line, "each with the next"),
     "star": Topology(star, "robot 0 with everyone"),
     "k-nearest": Topology(k_nearest, "each with the graph_options.nearest nearest at the start"),
-    "random": Topology(random, "a random tree and more links, graph_options.mean_degree per robot"),
+    "random": Topology(random, "a random tree and more, graph_options.mean_degree per robot"),
     "range-limited": Topology(everyone, "whoever is within graph_options.range metres now", ranged=True),
     "directed-ring": Topology(directed_ring, "each listens to the one before it", directed=True),
     "fig-3.2": Topology(ring, "four robots in a ring (section 3.3.3, Example 2)", robots=4),
