@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from protocol import keys
 from protocol.bus import Delivery, Lost, Seen
+from protocol.errors import ScenarioError
 from protocol.history.file import Histories
 from protocol.memory_bus import MemoryBus, MemoryNetwork
 from protocol.messages import Drive, Event, Halt, Inject, Linked, Outcome, Reading, Report, Resume, Shared
@@ -69,6 +70,8 @@ class MemorySwarm:
         history: Histories | None = None,
         run: str = "memory",
     ) -> None:
+        if scenario.clock != "lockstep":
+            raise ScenarioError(f'clock is "{scenario.clock}"; a run in memory has no wall clock, it must be "lockstep".')
         self.scenario = scenario
         self.run = run
         self._histories = history

@@ -22,7 +22,8 @@ from world_server.realtime_session import RealtimeWorldSession
 from world_server.telemetry import Telemetry
 
 PROGRESS_PERIOD = 0.1  # s
-COMPLAINT_PERIOD = 10.0  # s between two words about a schedule that moves
+COMPLAINT_PERIOD = 10.0  # s between two words about a schedule that moves,
+WORTH_A_WORD = 0.1  # when it has moved by so many s since
 AT_A_TIME = 5000  # events taken in before a step that is due: a flood must not hold up the clock
 
 
@@ -51,7 +52,7 @@ class RealtimeWorld:
         settle_memory()
         begun = clock()
         pace = Pace(begun, tick / realtime.speed, realtime.catch_up / realtime.speed)
-        next_progress, next_complaint, alone_since = 0.0, begun, None
+        next_progress, next_complaint, told, alone_since = 0.0, begun, 0.0, None
         session.start()
         if self.telemetry is not None:
             self.telemetry.tick()
@@ -65,7 +66,7 @@ class RealtimeWorld:
             now = clock()
             if pace.wait(now) > 0.0:
                 continue
-            moved = pace.step(now)
+            pace.step(now)
             session.slip, session.behind = pace.slip, pace.behind
             session.step()
             if self.telemetry is not None:
@@ -73,8 +74,8 @@ class RealtimeWorld:
             world.prepare()
             if pause := slow.pause(world.tick):
                 time.sleep(pause)
-            if moved and now >= next_complaint:
-                next_complaint = now + COMPLAINT_PERIOD
+            if pace.slip - told > WORTH_A_WORD and now >= next_complaint:
+                next_complaint, told = now + COMPLAINT_PERIOD, pace.slip
                 session.tell(f"the world cannot keep up: it has given up {pace.slip:.3f} s of the wall clock so far")
             alone_since = None if world.live else alone_since or now
             if alone_since is not None and now - alone_since > realtime.alone:
