@@ -24,11 +24,12 @@ import msgspec
 
 from protocol.errors import ScenarioError
 from protocol.scenario.check import check
+from protocol.scenario.near import near
 from protocol.scenario.presets import PRESETS, case_values
 from protocol.scenario.resolve import resolve
 from protocol.scenario.scenario import Scenario
 from protocol.scenario.schema import one_of, show
-from protocol.scenario.settings import Setting, named, near, parse_setting, read_settings
+from protocol.scenario.settings import Setting, named, parse_setting, read_settings
 from protocol.scenario.stage import label
 from protocol.scenario.toml_file import read_toml
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from swarm_helpers import near_the_plume
 
 from deploy.memory_run import MemorySwarm, run_in_memory
+from deploy.sweep.plan import make_plan
+from deploy.sweep.spec import read_spec
 
 SWITCHING = [{"at": 0, "name": "line"}, {"at": 1.0, "name": "star"}, {"at": 1.5, "name": "directed-ring"}]
 GRAPHS = {
@@ -65,3 +69,18 @@ def test_news_crosses_a_graph_that_is_never_connected_but_jointly_is() -> None:
         swarm.tick()
     assert swarm.session.world.first_detection is not None
     assert all(robot.session.agent.estimate is not None for robot in swarm.robots.values())
+
+
+def test_a_sweep_crosses_schedules_with_other_values(tmp_path: Path) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(
+        "seeds = {first = 1, count = 2}\n[graph_options]\nperiod = 30\n"
+        '[grid]\nalgorithm = ["cfpso", "dcs"]\n'
+        'topology = ["ring", "random", [{at = 0, name = "line"}, {at = 10, name = "star"}]]\n'
+    )
+    plan = make_plan(read_spec(file))
+    assert len(plan.jobs) == 12
+    assert [job.values["topology"] for job in plan.jobs[::2]] == ["ring", "random", "line > star@10"] * 2
+    of_seed = [job.scenario.graph for job in plan.jobs if job.values["topology"] == "random"]
+    assert of_seed[0] != of_seed[1], "a random graph of its own for every seed"
+    assert of_seed[:2] == of_seed[2:]
