@@ -2,9 +2,9 @@
 
 Rules: part of the shell. A robot that was stopped for longer than half a lease may be about to lose links that both of
 its ends still believe in: it is let in when it has been awake for half a lease, in which it lets all its neighbours hear
-from it, or they have noticed that it is gone and have linked up again. And neighbours go on telling a robot that is stopped their
-states, until its link has ended: after a few ticks the world waits for that, for a socket that is full would stop them,
-too, and for good. Nothing of this changes the truth.
+from it, or they have noticed that it is gone and have linked up again. And neighbours go on telling a robot that is
+stopped their states, until its link has ended: after a few ticks the world waits for that, for a socket that is full
+would stop them, too, and for good. Nothing of this changes the truth.
 """
 
 from __future__ import annotations

@@ -76,41 +76,44 @@ def _fault(
     until = round(at + 0.1 + draws.uniform() * 0.6 * max_time, 2)
     p = round(draws.uniform(), 2)
     some = _some(draws, edges)
+    fault: Fault
     match kind:
         case "crash":
-            return Crash(at=at, robot=robot)
+            fault = Crash(at=at, robot=robot)
         case "hang":
-            return Hang(at=at, until=until, robot=robot)
+            fault = Hang(at=at, until=until, robot=robot)
         case "loss":
-            return Loss(at=at, until=until, edges=some, probability=p)
+            fault = Loss(at=at, until=until, edges=some, probability=p)
         case "delay":
             late, jitter = round(draws.uniform(), 2), round(draws.uniform(), 2)
-            return Delay(at=at, until=until, edges=some, delay=late, jitter=jitter, probability=p)
+            fault = Delay(at=at, until=until, edges=some, delay=late, jitter=jitter, probability=p)
         case "duplicate":
-            return Duplicate(at=at, until=until, edges=some, probability=p, after=round(draws.uniform(), 2))
+            fault = Duplicate(at=at, until=until, edges=some, probability=p, after=round(draws.uniform(), 2))
         case "reorder":
-            return Reorder(at=at, until=until, edges=some, probability=p)
+            fault = Reorder(at=at, until=until, edges=some, probability=p)
         case "partition":
             cut = 1 + _below(draws, max(1, robots - 1))
             groups = (tuple(range(cut)), tuple(range(cut, robots)))
-            return Partition(at=at, until=until, groups=groups, one_way=draws.uniform() < 0.3)
+            fault = Partition(at=at, until=until, groups=groups, one_way=draws.uniform() < 0.3)
         case "clock-skew":
             drift = round(0.2 * draws.normal(), 3)
-            return ClockSkew(at=at, until=until, robot=robot, offset=round(5 * draws.normal(), 2), drift=max(-1.0, drift))
+            fault = ClockSkew(at=at, until=until, robot=robot, offset=round(5 * draws.normal(), 2), drift=max(-1.0, drift))
         case "sensor":
             which = _one(draws, ("concentration", "wind", "position", "heading"))
             how = _one(draws, ("stuck", "bias", "dropout", "noise"))
-            return Sensor(at=at, until=until, robot=robot, which=which, how=how, value=p)  # type: ignore[arg-type]
+            fault = Sensor(at=at, until=until, robot=robot, which=which, how=how, value=p)  # type: ignore[arg-type]
         case "actuator":
             wheel = _one(draws, ("left", "right", "both"))
-            return Actuator(at=at, until=until, robot=robot, wheel=wheel, strength=p)  # type: ignore[arg-type]
+            fault = Actuator(at=at, until=until, robot=robot, wheel=wheel, strength=p)  # type: ignore[arg-type]
         case "liar":
             lies = _one(draws, ("fusion", "detection", "position", "decision"))
             offset = (round(20 * draws.normal(), 1), round(20 * draws.normal(), 1))
-            return Liar(at=at, until=until, robot=robot, lies=lies, offset=offset, noise=2 * p)  # type: ignore[arg-type]
+            fault = Liar(at=at, until=until, robot=robot, lies=lies, offset=offset, noise=2 * p)  # type: ignore[arg-type]
         case "world-slow":
-            return WorldSlow(at=at, until=min(until, at + 1.0), pause=0.001 + 0.02 * p)
-    raise ValueError(f"no draw for a fault of kind {kind!r}")
+            fault = WorldSlow(at=at, until=min(until, at + 1.0), pause=0.001 + 0.02 * p)
+        case _:
+            raise ValueError(f"no draw for a fault of kind {kind!r}")
+    return fault
 
 
 def _below(draws: Draws, n: int) -> int:

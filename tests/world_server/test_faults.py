@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from statistics import mean, stdev
 
 import pytest
@@ -170,7 +171,7 @@ def test_a_noisy_sensor_has_the_noise_that_was_asked_for() -> None:
 def test_a_sensor_that_drops_out_reads_nothing_and_odometry_stays_where_it_was() -> None:
     assert {r.concentration for r in observed(Sensor(robot=0, which="concentration", how="dropout"))} == {0.0}
     xs = [r.x for r in observed(Sensor(robot=0, which="position", how="dropout", value=0.5))]
-    held = sum(a == b for a, b in zip(xs, xs[1:], strict=False))
+    held = sum(a == b for a, b in pairwise(xs))
     assert 70 < held < 130
     assert all(x <= 100.0 + k for k, x in enumerate(xs))
 

@@ -54,7 +54,9 @@ def faults_in(
     yield from _overlaps(faults)
 
 
-def _edges(name: str, fault: OnEdges, robots: int, edges: Collection[tuple[int, int]]) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _edges(
+    name: str, fault: OnEdges, robots: int, edges: Collection[tuple[int, int]]
+) -> Iterator[tuple[str, tuple[str, ...]]]:
     for i, j in fault.edges:
         if max(i, j) >= robots:
             yield _no_robot(name, "edges", max(i, j), robots)

@@ -14,8 +14,8 @@ from msgspec import inspect
 
 from protocol.errors import ScenarioError
 from protocol.scenario.faults import KINDS, Fault
-from protocol.scenario.schema import one_of, show, words
 from protocol.scenario.near import near, near_or_all
+from protocol.scenario.schema import one_of, show, words
 
 EXAMPLE = '[[faults]] kind = "loss", probability = 0.3'
 
@@ -58,7 +58,7 @@ def _read(entry: Mapping[str, object], place: str) -> Fault:
         if field.required and field.name not in entry:
             allowed = words(_described(types[field.name]))
             raise ScenarioError(f"{place}: {field.name} is missing; it must be {allowed}.")
-    return msgspec.convert({name: value for name, value in entry.items()}, record)
+    return msgspec.convert(dict(entry), record)
 
 
 def _described(kind: Any) -> inspect.Type:
