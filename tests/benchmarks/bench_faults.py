@@ -3,7 +3,8 @@
     python tests/benchmarks/bench_faults.py --memory 1000 --processes 100
 
 In memory every schedule is run twice, in worker processes; over real processes once (a launcher each), against a run in
-memory. The checkers (deploy.checkers) go over the history of each. After each run over processes nobody may be left. The last line has the totals; exit status 1 when any failed.
+memory. The checkers (deploy.checkers) go over the history of each. After each run over processes nobody may be left. The
+last line has the totals; exit status 1 when any failed.
 """
 
 from __future__ import annotations
