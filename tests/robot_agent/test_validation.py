@@ -32,11 +32,11 @@ def test_an_honest_robot_is_believed_at_every_tick():
         ({"vx": 3.0}, "speed"),
         ({"tick": 10_000}, "tick"),
         ({"tick": -1}, "tick"),
-        ({"detected_at": 9.0}, "time"),
-        ({"first_detected_at": 9.0, "detected_at": 9.5}, "time"),
+        ({"detected_at": 19.0}, "time"),
+        ({"first_detected_at": 19.0, "detected_at": 19.5}, "time"),
         ({"first_detected_at": 4.0, "detected_at": 3.0}, "time"),
         ({"first_detected_at": -1.0}, "time"),
-        ({"best_at": 9.0}, "time"),
+        ({"best_at": 19.0}, "time"),
         ({"best_concentration": 2e6}, "concentration"),
         ({"best_concentration": -1.0}, "concentration"),
         ({"best_x": -400.0}, "concentration"),
@@ -114,10 +114,10 @@ def test_whatever_is_claimed_nothing_beyond_the_bounds_is_used(values):
         assert -100.0 <= state.x <= 200.0
         assert state.vx**2 + state.vy**2 < 1.3**2
         assert -60.0 <= state.fusion_x <= 160.0
-        assert max(state.detected_at, state.first_detected_at, state.best_at) <= 7.0
+        assert max(state.detected_at, state.first_detected_at, state.best_at) <= 10.0
         assert 0.0 <= state.best_concentration <= 1e6
         assert -1 <= state.search_leg <= 2 * (state.tick + 1)
-        assert state.tick <= 140
+        assert state.tick <= 200
 
 
 def test_a_passed_on_place_that_contradicts_what_the_robot_says_itself_is_left_out():
