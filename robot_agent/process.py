@@ -17,7 +17,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Resume, Shared
+from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Resume, Shared
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
@@ -64,6 +64,7 @@ class RobotProcess:
     place: RobotPlace
     history: Path | None = None  # folder to write the history into
     say: Callable[[str], None] = lambda _: None
+    rejoin: bool = False  # the run has begun: this process takes the place of one that ended
 
     def serve(self) -> None:
         """Join the run, take part until the world halts it, leave.
@@ -87,7 +88,10 @@ class RobotProcess:
         histories = HistoryFolder(self.history) if self.history is not None else None
         try:
             session, wires = self._prepare(bus, view, histories)
-            self._link_up(bus, view)
+            if self.rejoin:
+                self._come_again(bus, view)
+            else:
+                self._link_up(bus, view)
             if isinstance(session, RealtimeRobotSession):
                 sender = {keys.robot(j, keys.SHARED): j for j, _ in view.row}
                 RealtimePart(bus, session, sender, wires.report, view.realtime.alone, self.say).take_part()
@@ -137,14 +141,32 @@ class RobotProcess:
                 )
             time.sleep(LINK_POLL)
 
+    def _come_again(self, bus: Bus, view: RobotScenario) -> None:
+        """Wait until the world is there and say so to it; it calls this robot when both ends see its links."""
+        deadline = time.monotonic() + view.network.join_timeout
+        while not bus.matched(keys.robot(view.robot, keys.DRIVE), (keys.WORLD,)):
+            if time.monotonic() > deadline:
+                raise SwarmFailure(f"robot {view.robot}: the world is gone, nothing to take part in again.")
+            time.sleep(LINK_POLL)
+        links = tuple(sorted(j for name in bus.links() if (j := keys.robot_of(name)) in view.linked and j is not None))
+        answer = bus.ask(keys.robot(view.robot, keys.JOIN), Join(view.robot, links), max(0.0, deadline - time.monotonic()))
+        if not isinstance(answer, Answer) or not answer.ok:
+            why = answer.text if isinstance(answer, Answer) else "it does not answer."
+            raise SwarmFailure(f"robot {view.robot}: the world refuses to let it join again: {why}")
+
     def _take_part(self, bus: Bus, session: RobotSession, wires: Wires) -> None:
         halted = False
         world_gone: float | None = None  # since when, s
-        links = Links(session, self.place.scenario.linked, wires.linked)
+        view = self.place.scenario
+        # A process that takes the place of another waits until it sees its neighbours; the others have seen them.
+        links = Links(session, () if self.rejoin else view.linked, wires.linked)
+        for j in view.linked if self.rejoin else ():
+            session.lose(j)
+        patience = view.supervision.world_within if view.supervision.checkpoint_every else WORLD_BACK
         sender = {keys.robot(j, keys.SHARED): j for j, _ in self.place.scenario.row}
         settle_memory()
         while True:
-            event = bus.receive(FAREWELL if halted else None if world_gone is None else WORLD_BACK)
+            event = bus.receive(FAREWELL if halted else None if world_gone is None else patience)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Shared):
@@ -175,7 +197,7 @@ class RobotProcess:
                     links.seen(seen)
             elif event is None and halted:
                 return
-            if world_gone is not None and time.monotonic() - world_gone >= WORLD_BACK:
+            if world_gone is not None and time.monotonic() - world_gone >= patience:
                 raise SwarmFailure(f"robot {session.agent.robot}: the world is gone at tick {session.tick}.")
 
 

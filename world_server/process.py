@@ -18,17 +18,21 @@ from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Drive, Join, Linked, Outcome, Progress, Report
-from protocol.scenario import Scenario, lease_ms
+from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Progress, Report
+from protocol.scenario import Scenario, lease_ms, scenario_digest
 from protocol.scenario.faults import Crash, Hang
 from protocol.scenario.place import place_of
 from protocol.shell import Stop, settle_memory
 from protocol.zenoh_bus import ZenohBus, token_of
+from world_server.absences import Absences
+from world_server.checkpoints import Checkpoints
+from world_server.comeback import gather_again
 from world_server.faults.slow import Slowness
 from world_server.history import WorldHistory
 from world_server.outcome import outcome
 from world_server.realtime import RealtimeWorld
 from world_server.realtime_session import RealtimeWorldSession
+from world_server.recoverable import RecoverableSession
 from world_server.returns import Returns
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
@@ -51,6 +55,7 @@ class WorldProcess:
     launcher: bool = False  # wait for a launcher before the start, and for it to take the outcome
     history: Path | None = None  # folder to write the history into
     say: Callable[[str], None] = lambda _: None
+    checkpoints: Path | None = None  # folder for checkpoints; one of this run that is there is gone on from
 
     def serve(self) -> Outcome:
         """Bring the swarm up, run it to its end; how it ended.
@@ -69,14 +74,20 @@ class WorldProcess:
             lockstep=self.scenario.clock == "lockstep",
         )
         histories = HistoryFolder(self.history) if self.history is not None else None
+        kept = Checkpoints(self.checkpoints, self.run, scenario_digest(self.scenario)) if self.checkpoints else None
+        over = False
         try:
-            return self._serve(bus, histories)
+            ended = self._serve(bus, histories, kept)
+            over = True
+            return ended
         finally:
             bus.close()
             if histories is not None:
                 histories.close()
+            if kept is not None:
+                kept.close(remove=over)
 
-    def _serve(self, bus: Bus, histories: Histories | None) -> Outcome:
+    def _serve(self, bus: Bus, histories: Histories | None, kept: Checkpoints | None) -> Outcome:
         n = self.scenario.robots
         for i in range(n):
             bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
@@ -95,21 +106,42 @@ class WorldProcess:
         result = bus.publisher(keys.OUTCOME, reliable=True)
 
         # The robots link up among themselves while the plume is warmed up here.
-        world = World(self.scenario)
-        history = WorldHistory(world, self.run, histories.member(keys.WORLD)) if histories is not None else None
-        if history is not None:
-            halt = history.halting(halt)
-        session = (WorldSession if lockstep else RealtimeWorldSession)(world, send, halt, tell, resume, returns.inject)
-        self._gather(bus)
+        history: WorldHistory | None = None
+
+        def end(message: Halt) -> None:
+            (halt if history is None else history.halting(halt))(message)
+
+        saved = kept.load() if kept is not None else None
+        world = World(self.scenario) if saved is None else World.restore(self.scenario, saved[0].world)
+        session: WorldSession
+        if lockstep:
+            patient = self.scenario.supervision.restart != "never"
+            journal = kept.note if kept is not None else lambda _: None
+            session = RecoverableSession(world, send, end, tell, resume, returns.inject, journal, patient=patient)
+            if saved is not None:
+                session.restore(saved[0].session, saved[1])
+        else:
+            session = RealtimeWorldSession(world, send, end, tell, resume, returns.inject)
+        if histories is not None:  # not before: what a world that came back lived through again is written already
+            history = WorldHistory(world, self.run, histories.member(keys.WORLD))
+        if saved is None:
+            self._gather(bus)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
         watched = self.recorder or bus.matched(keys.TRUTH, ())
         telemetry = Telemetry(world, truth, field) if watched else None
-        start = time.perf_counter()
+        start = time.perf_counter() - (saved[0].wall_s if saved is not None else 0.0)
         try:
+            if isinstance(session, RecoverableSession) and saved is not None:
+                members = [m for m, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted]
+                patience = self.scenario.network.return_timeout
+                gather_again(bus, session, members, self._answer_late, patience)
+            elif isinstance(session, RecoverableSession) and kept is not None:
+                kept.write(0, world.snapshot(), session.snapshot(), 0.0)
             if isinstance(session, RealtimeWorldSession):
                 RealtimeWorld(bus, session, telemetry, progress, self._answer_late, self.launcher).run()
             else:
-                self._run(bus, session, telemetry, progress, returns)
+                assert isinstance(session, RecoverableSession)
+                self._run(bus, session, telemetry, progress, returns, kept, start)
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start
@@ -154,7 +186,7 @@ class WorldProcess:
             bus.matched(keys.robot(i, keys.READING), (keys.robot_name(i),)) for i in range(self.scenario.robots)
         )
 
-    def _answer(self, asked: Asked, waiting: set[int]) -> None:
+    def _answer(self, asked: Asked, waiting: set[int] | None) -> None:
         message = asked.message
         if isinstance(message, Ask):
             asked.answer(self._place(message.robot))
@@ -164,14 +196,16 @@ class WorldProcess:
                 asked.answer(Answer(False, f"there is no robot {i}: this run has 0 to {self.scenario.robots - 1}."))
                 return
             declared = place_of(self.scenario, i, self.endpoints).scenario.linked
-            if message.links != declared:
+            if message.links != declared if waiting is not None else not set(declared).issuperset(message.links):
                 asked.answer(Answer(False, f"its links {message.links} are not the declared ones {declared}."))
                 return
-            waiting.discard(i)
+            if waiting is not None:
+                waiting.discard(i)
             asked.answer(Answer(True, ""))
 
     def _answer_late(self, asked: Asked) -> None:
-        self._answer(asked, set())
+        """Of a robot that joins a run that has begun the links are looked at when it is called."""
+        self._answer(asked, None)
 
     def _place(self, i: int) -> Answer:
         if not 0 <= i < self.scenario.robots:
@@ -181,10 +215,12 @@ class WorldProcess:
     def _run(
         self,
         bus: Bus,
-        session: WorldSession,
+        session: RecoverableSession,
         telemetry: Telemetry | None,
         progress: Callable[[Progress], None],
         returns: Returns,
+        kept: Checkpoints | None,
+        start: float,
     ) -> None:
         """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
         world = session.world
@@ -197,16 +233,24 @@ class WorldProcess:
         slow = Slowness(self.scenario)
         if not self.launcher and any(isinstance(fault, Crash | Hang) for fault in self.scenario.faults):
             session.tell("no launcher: robots that crash or hang as planned are only left out of the run")
-        session.start()
+        absences = Absences()
+        every = max(1, round(self.scenario.supervision.checkpoint_every / world.dt))
+        next_checkpoint = (world.tick // every + 1) * every
+        if not session.started:
+            session.start()
         if telemetry is not None:
             telemetry.tick()
-        world.prepare(batch)
+        world.prepare(batch - world.tick % batch)  # a world that came back may be anywhere in a batch
         settle_memory()
         receive, counters = bus.receive, bus.counters
         complete = False  # all who take part have answered
+        patience = self.scenario.network.return_timeout
+        alone = None  # since when nobody takes part and somebody may come, s
         while session.ended is None:
             complete = complete or session.idle
-            event = receive(0 if session.idle else POLL if complete or session.awaited else None)
+            alone = (alone or time.monotonic()) if session.deserted else None
+            looking = complete or session.awaited or alone is not None
+            event = receive(0 if session.idle else POLL if looking else None)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Drive):
@@ -218,17 +262,30 @@ class WorldProcess:
                     session.take_linked(message)
             elif isinstance(event, Lost):
                 lost = keys.robot_of(event.name)
+                if lost in world.live and lost is not None:
+                    absences.lost(lost, time.perf_counter(), world.t)
                 complete = (lost is not None and session.lose(lost)) or complete
             elif isinstance(event, Seen):
-                if (seen := keys.robot_of(event.name)) in session.awaited and seen is not None:
+                seen = keys.robot_of(event.name)
+                if seen in session.awaited and seen is not None:
                     session.call(seen)
+                elif seen is not None:
+                    session.come(seen)
             elif isinstance(event, Asked):
-                event.answer(Answer(False, "the run has begun."))
+                self._answer_late(event)
+            if alone is not None and session.deserted and time.monotonic() - alone > patience:
+                session.end("all robots are gone")
             if session.awaited:
                 returns.look(session)
             if complete and not returns.hold(session):
                 complete = False
+                live = world.live.copy()
                 session.step()
+                for robot, text in absences.stepped(live, time.perf_counter(), world.t):
+                    session.tell(text, robot)
+                if kept is not None and world.tick >= next_checkpoint and session.quiet:
+                    next_checkpoint = (world.tick // every + 1) * every
+                    kept.write(world.tick, world.snapshot(), session.snapshot(), time.perf_counter() - start)
                 if telemetry is not None:
                     telemetry.tick()
                 if world.tick % batch == 0:
