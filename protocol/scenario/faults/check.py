@@ -35,7 +35,7 @@ def faults_in(
         tick: control period, s.
     """
     for n, fault in enumerate(faults, 1):
-        name = f"faults: entry {n} ({fault.__struct_config__.tag})"
+        name = f"[[faults]] {n} ({fault.__struct_config__.tag})"
         if fault.end <= fault.at:
             yield f"{name}: until is {fault.end:g}; it must be greater than at, which is {fault.at:g}.", ("faults",)
         if isinstance(fault, OfRobot) and fault.robot >= robots:
@@ -98,7 +98,7 @@ def _overlaps(faults: tuple[Fault, ...]) -> Iterator[tuple[str, tuple[str, ...]]
         for k, earlier in stops[:m]:
             if later.robot == earlier.robot and later.at < _back(earlier) and earlier.at < _back(later):
                 yield (
-                    f"faults: entries {k} and {n} stop robot {later.robot} at the same time, from {earlier.at:g} s"
+                    f"[[faults]] {k} and {n} stop robot {later.robot} at the same time, from {earlier.at:g} s"
                     f" and from {later.at:g} s; the second must begin after the first is over.",
                     ("faults",),
                 )
@@ -112,4 +112,5 @@ def _back(fault: Crash | Hang) -> float:
 
 
 def _no_robot(name: str, value: str, robot: int, robots: int) -> tuple[str, tuple[str, ...]]:
-    return f"{name}: {value} names robot {robot}; it must be from 0 to {robots - 1}.", ("faults", "robots")
+    given = f"robot is {robot}" if value == "robot" else f"{value} names robot {robot}"
+    return f"{name}: {given}; it must be from 0 to {robots - 1}.", ("faults", "robots")
