@@ -10,7 +10,6 @@ checkpoint, and the ones before are removed after it: at every moment one pair i
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass, field
 from io import FileIO
 from pathlib import Path
@@ -42,6 +41,9 @@ class Checkpoint(Struct, frozen=True, array_like=True):
     wall_s: float  # since the first tick
 
 
+Saved = tuple[Checkpoint, list[Input]]
+
+
 @dataclass(slots=True)
 class Checkpoints:
     """The files of one run."""
@@ -71,7 +73,7 @@ class Checkpoints:
             frame = b"".join((len(body).to_bytes(4, "little"), crc32(body).to_bytes(4, "little"), body))
             self._journal.write(frame)
 
-    def load(self) -> tuple[Checkpoint, list[Input]] | None:
+    def load(self) -> Saved | None:
         """The last checkpoint and what happened since; None when there is none. The journal is gone on with.
 
         Raises: SwarmFailure when it cannot be read.
@@ -102,8 +104,6 @@ class Checkpoints:
         if remove:
             for path in self._files():
                 path.unlink(missing_ok=True)
-            with contextlib.suppress(OSError):  # there is something else in it
-                self.folder.rmdir()
 
     def _read_journal(self, tick: int) -> list[Input]:
         path = self._path(tick, JOURNAL)

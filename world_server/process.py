@@ -9,7 +9,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import gcd
 from pathlib import Path
 
 import msgspec
@@ -18,17 +17,16 @@ from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Progress, Report
+from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Report
 from protocol.scenario import Scenario, lease_ms, scenario_digest
 from protocol.scenario.faults import Crash, Hang
 from protocol.scenario.place import place_of
-from protocol.shell import Stop, settle_memory
+from protocol.shell import Stop
 from protocol.zenoh_bus import ZenohBus, token_of
-from world_server.absences import Absences
-from world_server.checkpoints import Checkpoints
+from world_server.checkpoints import Checkpoints, Saved
 from world_server.comeback import gather_again
-from world_server.faults.slow import Slowness
 from world_server.history import WorldHistory
+from world_server.lockstep import LockstepWorld
 from world_server.outcome import outcome
 from world_server.realtime import RealtimeWorld
 from world_server.realtime_session import RealtimeWorldSession
@@ -38,7 +36,6 @@ from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
 from world_server.world import World
 
-PROGRESS_PERIOD = 0.1  # wall-clock s
 POLL = 0.02  # s between two looks at what is not an event
 LAST_WORDS = 1.0  # s that the world waits for the robots' reports
 FAREWELL = 2.0  # s that the world stays at most for the outcome to be taken
@@ -88,19 +85,9 @@ class WorldProcess:
                 kept.close(remove=over)
 
     def _serve(self, bus: Bus, histories: Histories | None, kept: Checkpoints | None) -> Outcome:
-        n = self.scenario.robots
-        for i in range(n):
-            bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
-            bus.subscribe(keys.robot(i, keys.REPORT), Report)
-            bus.subscribe(keys.robot(i, keys.LINKED), Linked)
-        bus.serve(keys.SCENARIO, Ask)
-        bus.serve("robot/*/join", Join)
-        lockstep = self.scenario.clock == "lockstep"
-        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=lockstep) for i in range(n)}
-        resume = {i: bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in range(n)}
+        self._listen(bus)
         returns = Returns(self.scenario, bus.publisher(keys.INJECT, reliable=True) if self.launcher else None)
         halt = bus.publisher(keys.HALT, reliable=True)
-        tell = bus.publisher(keys.EVENTS, reliable=False)
         truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
         progress = bus.publisher(keys.PROGRESS, reliable=False)
         result = bus.publisher(keys.OUTCOME, reliable=True)
@@ -112,36 +99,29 @@ class WorldProcess:
             (halt if history is None else history.halting(halt))(message)
 
         saved = kept.load() if kept is not None else None
-        world = World(self.scenario) if saved is None else World.restore(self.scenario, saved[0].world)
-        session: WorldSession
-        if lockstep:
-            patient = self.scenario.supervision.restart != "never"
-            journal = kept.note if kept is not None else lambda _: None
-            session = RecoverableSession(world, send, end, tell, resume, returns.inject, journal, patient=patient)
-            if saved is not None:
-                session.restore(saved[0].session, saved[1])
-        else:
-            session = RealtimeWorldSession(world, send, end, tell, resume, returns.inject)
+        session = self._session(bus, end, returns, kept, saved)
+        world = session.world
         if histories is not None:  # not before: what a world that came back lived through again is written already
             history = WorldHistory(world, self.run, histories.member(keys.WORLD))
-        if saved is None:
+        if isinstance(session, RecoverableSession) and saved is not None:
+            members = [m for m, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted]
+            gather_again(bus, session, members, self._answer_late, self.scenario.network.return_timeout)
+        else:
             self._gather(bus)
+            if isinstance(session, RecoverableSession) and kept is not None:
+                kept.write(0, world.snapshot(), session.snapshot(), 0.0)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
         watched = self.recorder or bus.matched(keys.TRUTH, ())
         telemetry = Telemetry(world, truth, field) if watched else None
+        planned = any(isinstance(fault, Crash | Hang) for fault in self.scenario.faults)
+        if planned and not self.launcher and isinstance(session, RecoverableSession):
+            session.tell("no launcher: robots that crash or hang as planned are only left out of the run")
         start = time.perf_counter() - (saved[0].wall_s if saved is not None else 0.0)
         try:
-            if isinstance(session, RecoverableSession) and saved is not None:
-                members = [m for m, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted]
-                patience = self.scenario.network.return_timeout
-                gather_again(bus, session, members, self._answer_late, patience)
-            elif isinstance(session, RecoverableSession) and kept is not None:
-                kept.write(0, world.snapshot(), session.snapshot(), 0.0)
             if isinstance(session, RealtimeWorldSession):
                 RealtimeWorld(bus, session, telemetry, progress, self._answer_late, self.launcher).run()
             else:
-                assert isinstance(session, RecoverableSession)
-                self._run(bus, session, telemetry, progress, returns, kept, start)
+                LockstepWorld(bus, session, telemetry, progress, returns, kept, start, self._answer_late).run()
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start
@@ -154,6 +134,33 @@ class WorldProcess:
         result(ended)
         self._farewell(bus)
         return ended
+
+    def _listen(self, bus: Bus) -> None:
+        for i in range(self.scenario.robots):
+            bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
+            bus.subscribe(keys.robot(i, keys.REPORT), Report)
+            bus.subscribe(keys.robot(i, keys.LINKED), Linked)
+        bus.serve(keys.SCENARIO, Ask)
+        bus.serve("robot/*/join", Join)
+
+    def _session(
+        self, bus: Bus, halt: Callable[[Halt], None], returns: Returns, kept: Checkpoints | None, saved: Saved | None
+    ) -> RecoverableSession | RealtimeWorldSession:
+        """The world and its session: new, or as they were `saved`."""
+        scenario, robots = self.scenario, range(self.scenario.robots)
+        lockstep = scenario.clock == "lockstep"
+        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=lockstep) for i in robots}
+        resume = {i: bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in robots}
+        tell = bus.publisher(keys.EVENTS, reliable=False)
+        world = World(scenario) if saved is None else World.restore(scenario, saved[0].world)
+        if not lockstep:
+            return RealtimeWorldSession(world, send, halt, tell, resume, returns.inject)
+        journal = kept.note if kept is not None else lambda _: None
+        patient = scenario.supervision.restart != "never"
+        session = RecoverableSession(world, send, halt, tell, resume, returns.inject, journal, patient=patient)
+        if saved is not None:
+            session.restore(saved[0].session, saved[1])
+        return session
 
     def _gather(self, bus: Bus) -> None:
         """Wait until every robot has joined and every publication has its subscriber."""
@@ -211,93 +218,6 @@ class WorldProcess:
         if not 0 <= i < self.scenario.robots:
             return Answer(False, f"there is no robot {i}: this run has robots 0 to {self.scenario.robots - 1}.")
         return Answer(True, msgspec.json.encode(place_of(self.scenario, i, self.endpoints)).decode())
-
-    def _run(
-        self,
-        bus: Bus,
-        session: RecoverableSession,
-        telemetry: Telemetry | None,
-        progress: Callable[[Progress], None],
-        returns: Returns,
-        kept: Checkpoints | None,
-        start: float,
-    ) -> None:
-        """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
-        world = session.world
-        next_progress = 0.0
-        # The field is advanced while the robots think, in batches that end where somebody looks at it.
-        batch = world.ticks_per_sample
-        if telemetry is not None:
-            batch = gcd(batch, telemetry.field_ticks)
-        sender = {keys.robot(i, keys.DRIVE): i for i in range(self.scenario.robots)}
-        slow = Slowness(self.scenario)
-        if not self.launcher and any(isinstance(fault, Crash | Hang) for fault in self.scenario.faults):
-            session.tell("no launcher: robots that crash or hang as planned are only left out of the run")
-        absences = Absences()
-        every = max(1, round(self.scenario.supervision.checkpoint_every / world.dt))
-        next_checkpoint = (world.tick // every + 1) * every
-        if not session.started:
-            session.start()
-        if telemetry is not None:
-            telemetry.tick()
-        world.prepare(batch - world.tick % batch)  # a world that came back may be anywhere in a batch
-        settle_memory()
-        receive, counters = bus.receive, bus.counters
-        complete = False  # all who take part have answered
-        patience = self.scenario.network.return_timeout
-        alone = None  # since when nobody takes part and somebody may come, s
-        while session.ended is None:
-            complete = complete or session.idle
-            alone = (alone or time.monotonic()) if session.deserted else None
-            looking = complete or session.awaited or alone is not None
-            event = receive(0 if session.idle else POLL if looking else None)
-            if isinstance(event, Delivery):
-                message = event.message
-                if isinstance(message, Drive):
-                    if sender[event.key] == message.robot:
-                        complete = session.take_drive(message) or complete
-                    else:
-                        counters.refused += 1
-                elif isinstance(message, Linked) and keys.robot_of(event.key) == message.robot:
-                    session.take_linked(message)
-            elif isinstance(event, Lost):
-                lost = keys.robot_of(event.name)
-                if lost in world.live and lost is not None:
-                    absences.lost(lost, time.perf_counter(), world.t)
-                complete = (lost is not None and session.lose(lost)) or complete
-            elif isinstance(event, Seen):
-                seen = keys.robot_of(event.name)
-                if seen in session.awaited and seen is not None:
-                    session.call(seen)
-                elif seen is not None:
-                    session.come(seen)
-            elif isinstance(event, Asked):
-                self._answer_late(event)
-            if alone is not None and session.deserted and time.monotonic() - alone > patience:
-                session.end("all robots are gone")
-            if session.awaited:
-                returns.look(session)
-            if complete and not returns.hold(session):
-                complete = False
-                live = world.live.copy()
-                session.step()
-                for robot, text in absences.stepped(live, time.perf_counter(), world.t):
-                    session.tell(text, robot)
-                if kept is not None and world.tick >= next_checkpoint and session.quiet:
-                    next_checkpoint = (world.tick // every + 1) * every
-                    kept.write(world.tick, world.snapshot(), session.snapshot(), time.perf_counter() - start)
-                if telemetry is not None:
-                    telemetry.tick()
-                if world.tick % batch == 0:
-                    world.prepare(batch)
-                if pause := slow.pause(world.tick):
-                    time.sleep(pause)
-                now = time.perf_counter()
-                if now >= next_progress:
-                    next_progress = now + PROGRESS_PERIOD
-                    progress(
-                        Progress(world.tick, world.t, len(world.live), world.detections, world.closest)
-                    )
 
     def _collect_reports(self, bus: Bus, session: WorldSession) -> None:
         deadline = time.monotonic() + LAST_WORDS

@@ -19,6 +19,9 @@ def robot(
     run: Annotated[str, typer.Option("--run", help="Name of the run; the world gives the same.")],
     timeout: Annotated[float, typer.Option("--timeout", help="Wait this long for the world, s.")] = 30.0,
     history: Annotated[Path | None, typer.Option("--history", metavar="DIR", help="Write down what it did.")] = None,
+    rejoin: Annotated[
+        bool, typer.Option("--rejoin", help="The run has begun: take the place of a process that ended.")
+    ] = False,
 ) -> None:
     """Be one robot: ask the world who I am, link up with my neighbours, take part until the run is over."""
     from robot_agent.process import RobotProcess, ask_place
@@ -32,7 +35,7 @@ def robot(
         def say(text: str) -> None:
             print(f"robot {robot}: {text}", file=sys.stderr)
 
-        RobotProcess(run, place, history, say).serve()
+        RobotProcess(run, place, history, say, rejoin).serve()
         return EXIT_OK
 
     be_a_member(serve)

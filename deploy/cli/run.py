@@ -12,7 +12,7 @@ import typer
 from typer import Argument, Option
 
 from deploy.cli.advice import advice
-from deploy.cli.options import INTERRUPTED, complain, prepare_history, read_scenario
+from deploy.cli.options import INTERRUPTED, checkpoint_folder, complain, prepare_history, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
 from protocol.scenario import Scenario
@@ -42,6 +42,15 @@ def run(
     history: Annotated[
         Path | None, Option("--history", metavar="DIR", help="Everyone writes down what it did, for `check`.")
     ] = None,
+    restart: Annotated[
+        str | None, Option("--restart", help="Robots whose process ends: never, crashed, always started again.")
+    ] = None,
+    checkpoint_every: Annotated[
+        float | None, Option("--checkpoint-every", metavar="S", help="The world can come back from the last S simulated s.")
+    ] = None,
+    checkpoint: Annotated[
+        Path | None, Option("--checkpoint", metavar="DIR", help="Where the checkpoints are kept while the run goes on.")
+    ] = None,
     json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else.")] = False,
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
@@ -53,7 +62,9 @@ def run(
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
             topology=topology, wind=wind, seed=seed, max_time=max_time, fusion=fusion, clock=clock, speed=speed,
+            restart=restart, checkpoint_every=checkpoint_every,
         )  # fmt: skip
+        checkpoint_folder(checkpoint, scenario)
         _fits(scenario, bus, speed)
     except ScenarioError as error:
         complain(error)
@@ -63,7 +74,7 @@ def run(
     signal.signal(signal.SIGTERM, _terminate)
     name = f"run-{secrets.token_hex(4)}"
     try:
-        outcome = _execute(name, scenario, bus, record, view, history, quiet=json)
+        outcome = _execute(name, scenario, bus, record, view, history, checkpoint, quiet=json)
     except SwarmFailure as error:
         complain(error)
         raise typer.Exit(EXIT_FAILED) from None
@@ -75,7 +86,15 @@ def run(
 
 
 def _execute(
-    name: str, scenario: Scenario, bus: str, record: Path | None, view: bool, history: Path | None, *, quiet: bool
+    name: str,
+    scenario: Scenario,
+    bus: str,
+    record: Path | None,
+    view: bool,
+    history: Path | None,
+    checkpoint: Path | None,
+    *,
+    quiet: bool,
 ) -> Outcome:
     from deploy.cli.progress import Display
 
@@ -86,7 +105,7 @@ def _execute(
             return run_watched(name, scenario, display, record, view=view, history=history)
         from deploy.launch.swarm import SwarmRun
 
-        return SwarmRun(name, scenario, record, view, history).execute(display)
+        return SwarmRun(name, scenario, record, view, history, checkpoint=checkpoint).execute(display)
 
 
 def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: bool) -> None:

@@ -1,4 +1,4 @@
-"""Processes that are killed and started again: robots rejoin, the world comes back to the bit, who ends too often is given up."""
+"""Processes that are killed and started again: robots rejoin, the world comes back to the bit, until they are given up."""
 
 import os
 import signal
