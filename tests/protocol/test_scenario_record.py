@@ -176,6 +176,7 @@ def value_of(path: str) -> st.SearchStrategy[Any]:
         "graph": st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), numbers), max_size=3).map(tuple),
         "start.positions": st.lists(st.tuples(numbers, numbers), max_size=3).map(tuple),
         "start.headings": st.lists(numbers, max_size=3).map(tuple),
+        "faults": st.lists(st.sampled_from(another("faults")), max_size=3).map(tuple),
         "search.target": st.tuples(numbers, numbers),
         "drill.velocity": st.tuples(numbers, numbers),
         "drill.centre": st.tuples(numbers, numbers),
