@@ -8,17 +8,18 @@ what an honest robot passes on is never a reason not to believe it. Bounds: scen
 Checked: the place (in or near the arena, no farther from the last one than a body can drive), the velocity, the tick,
 the times (not in the future, first before last), the best concentration (what a sensor can measure, at a place in the
 arena), the search (a leg that could have been reached, a heading that is a direction), and, once the group has detected
-the odour, fusion state, decision and virtual robot (in or near the arena). Of the states that it passes on for others
-only the impossible ones are left out: places that contradict what this robot heard from the other itself, or heard
-before. There is no variance among what robots tell each other, so that nobody can gain weight by claiming a small one;
-the weights a_ij are the listener's own.
+the odour, fusion state and decision (in or near the arena), and the virtual robot (on its leash). Of the states that it
+passes on for others only the impossible ones are left out: places that contradict what this robot heard from the other
+itself, or heard before. There is no variance among what robots tell each other, so that nobody can gain weight by
+claiming a small one; the weights a_ij are the listener's own.
 
 What a liar can still do in its own name: say "I smell it now" at every tick, so that the group never gives up a place
 where nothing is; claim a best concentration somewhere in the arena, up to the bound, which counts for
 `decision.recall` seconds after it is claimed (for ever when that is 0), and so move the oscillation centre p_hat (2.4)
 of all, a share c_2 of h^ic (3.31); lead the search from leg to leg; hold a false fusion state in the arena (against
-that: fusion.kind = "resilient"); and be elsewhere than it says by drifting there as slowly as a body drives, which
-moves formations (docs/lab.md has the effects). A robot's `notes` are the algorithm's own and are not checked.
+that: fusion.kind = "resilient"); and say from the start, or by drifting as slowly as a body drives, that it is where it
+is not: the consensus laws of chapters 5 and 6 know no other place of a neighbour and follow it (docs/lab.md has the
+effects). A robot's `notes` are the algorithm's own and are not checked.
 """
 
 from __future__ import annotations
