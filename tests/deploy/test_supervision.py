@@ -12,7 +12,8 @@ from deploy.memory_run import run_in_memory
 from protocol.errors import SwarmFailure
 
 pytestmark = pytest.mark.processes
-FAR = {"topology": "ring", "start__y": -45.0, "search__after": "stay"}  # nothing is found
+SLOW = {"topology": "ring", "start__y": -45.0, "search__after": "stay"}  # the source is found after some 2,000 ticks
+FAR = SLOW | {"plume__release_rate": 0.0}  # there is nothing to find: it goes on until it is ended
 
 
 def kill(swarm: Swarm, name: str) -> int:
@@ -26,7 +27,7 @@ def back(swarm: Swarm, robot: int) -> list[str]:
 
 
 def test_killed_robot_is_started_again_and_rejoins_the_running_swarm():
-    scenario = near_the_plume(**FAR, max_time=2000.0, supervision__restart="always")
+    scenario = near_the_plume(**FAR, max_time=1e5, supervision__restart="always")
     with Swarm(scenario) as swarm:
         swarm.under_way()
         first = kill(swarm, "robot/2")
@@ -55,7 +56,7 @@ def test_run_ends_as_usual_with_a_robot_that_was_started_again():
 
 
 def test_all_robots_killed_at_once_come_back():
-    scenario = near_the_plume(**FAR, robots=3, max_time=2000.0, supervision__restart="always")
+    scenario = near_the_plume(**FAR, robots=3, max_time=1e5, supervision__restart="always")
     with Swarm(scenario) as swarm:
         swarm.under_way()
         for i in range(3):
@@ -68,7 +69,7 @@ def test_all_robots_killed_at_once_come_back():
 
 @pytest.mark.parametrize("kills", [1, 3])
 def test_killed_world_comes_back_from_its_checkpoint_with_the_digest_of_an_undisturbed_run(kills):
-    scenario = near_the_plume(**FAR, max_time=120.0, supervision__checkpoint_every=3.0)
+    scenario = near_the_plume(**SLOW, max_time=120.0, supervision__checkpoint_every=3.0)
     with Swarm(scenario) as swarm:
         for _ in range(kills):
             seen = swarm.under_way().ticks
@@ -86,7 +87,7 @@ def test_killed_world_comes_back_from_its_checkpoint_with_the_digest_of_an_undis
 
 def test_robot_and_world_killed_together_both_come_back():
     scenario = near_the_plume(
-        **FAR, robots=4, max_time=2000.0, supervision__checkpoint_every=2.0, supervision__restart="always"
+        **FAR, robots=4, max_time=1e5, supervision__checkpoint_every=2.0, supervision__restart="always"
     )
     with Swarm(scenario) as swarm:
         swarm.under_way()
@@ -112,7 +113,7 @@ def test_planned_crash_with_restart_gives_the_same_truth_over_zenoh_and_in_memor
 
 
 def test_robot_that_ends_too_often_is_given_up_with_a_sentence_and_the_run_goes_on():
-    scenario = near_the_plume(**FAR, max_time=2000.0, supervision__restart="always", supervision__max_restarts=1)
+    scenario = near_the_plume(**FAR, max_time=1e5, supervision__restart="always", supervision__max_restarts=1)
     with Swarm(scenario) as swarm:
         swarm.under_way()
         kill(swarm, "robot/3")
@@ -128,7 +129,7 @@ def test_robot_that_ends_too_often_is_given_up_with_a_sentence_and_the_run_goes_
 
 def test_world_that_ends_too_often_ends_the_run_with_a_sentence():
     scenario = near_the_plume(
-        **FAR, robots=3, max_time=2000.0, supervision__checkpoint_every=2.0, supervision__max_restarts=1
+        **FAR, robots=3, max_time=1e5, supervision__checkpoint_every=2.0, supervision__max_restarts=1
     )
     with Swarm(scenario) as swarm:
         swarm.under_way()
