@@ -11,16 +11,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from protocol import keys
-from protocol.bus import Delivery, Lost
+from protocol.bus import Delivery, Lost, Seen
+from protocol.errors import ScenarioError
+from protocol.history.file import Histories
 from protocol.memory_bus import MemoryBus, MemoryNetwork
-from protocol.messages import Drive, Event, Halt, Outcome, Reading, Report, Shared
+from protocol.messages import Drive, Event, Halt, Inject, Linked, Outcome, Reading, Report, Resume, Shared
 from protocol.scenario import Scenario, robot_view
 from robot_agent.agent import Agent
+from robot_agent.history import RobotHistory
 from robot_agent.report import report
 from robot_agent.session import RobotSession
 from robot_agent.wiring import wire
+from world_server.history import WorldHistory
 from world_server.outcome import outcome
-from world_server.session import INTERRUPTED, WorldSession
+from world_server.session import CONTINUE, INTERRUPTED, KILL, WorldSession
 from world_server.world import World
 
 
@@ -29,6 +33,7 @@ class _Robot:
     bus: MemoryBus
     session: RobotSession
     report: Callable[[Report], None]
+    linked: Callable[[Linked], None]
     alive: bool = True
 
     def pump(self) -> None:
@@ -42,17 +47,34 @@ class _Robot:
                     session.take_shared(message)
                 elif isinstance(message, Reading):
                     session.take_reading(message)
+                elif isinstance(message, Resume):
+                    session.resume(message.tick)
+                    self.linked(Linked(message.robot, message.tick, session.agent.scenario.linked))
                 elif isinstance(message, Halt):
                     self.report(report(session, self.bus.counters))
             elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None:
                 session.lose(lost)
+            elif isinstance(event, Seen) and (seen := keys.robot_of(event.name)) is not None:
+                session.see(seen)
 
 
 class MemorySwarm:
     """World and robots of one run in memory, stepped from outside; faults are injected between the steps."""
 
-    def __init__(self, scenario: Scenario, *, wire: bool = False, tell: Callable[[Event], None] | None = None) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        *,
+        wire: bool = False,
+        tell: Callable[[Event], None] | None = None,
+        history: Histories | None = None,
+        run: str = "memory",
+    ) -> None:
+        if scenario.clock != "lockstep":
+            raise ScenarioError(f'clock is "{scenario.clock}"; a run in memory has no wall clock, it must be "lockstep".')
         self.scenario = scenario
+        self.run = run
+        self._histories = history
         n = scenario.robots
         links = [(keys.WORLD, keys.robot_name(i)) for i in range(n)]
         links += sorted({(keys.robot_name(min(i, j)), keys.robot_name(max(i, j))) for i, j, _ in scenario.graph})
@@ -60,16 +82,25 @@ class MemorySwarm:
         self.bus = self.network.join(keys.WORLD)
         self.bus.subscribe("robot/*/drive", Drive)
         self.bus.subscribe("robot/*/report", Report)
+        self.bus.subscribe("robot/*/linked", Linked)
         self.robots = {i: self._robot(i) for i in range(n)}
         send = {i: self.bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
+        resume = {i: self.bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in range(n)}
         halt = self.bus.publisher(keys.HALT, reliable=True)
-        self.session = WorldSession(World(scenario), send, halt, tell or (lambda _: None))
+        world = World(scenario)
+        self.history = WorldHistory(world, run, history.member(keys.WORLD)) if history else None
+        if self.history is not None:
+            halt = self.history.halting(halt)
+        self.session = WorldSession(world, send, halt, tell or (lambda _: None), resume, self._inject)
 
     def _robot(self, i: int) -> _Robot:
         view = robot_view(self.scenario, i)
         bus = self.network.join(keys.robot_name(i))
         wires = wire(bus, view)
-        return _Robot(bus, RobotSession(Agent(view), wires.tell, wires.drive), wires.report)
+        agent = Agent(view)
+        if self._histories is not None:
+            RobotHistory(agent, self.run, self._histories.member(keys.robot_name(i)))
+        return _Robot(bus, RobotSession(agent, wires.tell, wires.drive), wires.report, wires.linked)
 
     def start(self) -> None:
         """Send the first readings."""
@@ -90,10 +121,21 @@ class MemorySwarm:
         self.robots[i].alive = False
         self.network.kill(keys.robot_name(i))
 
+    def restart(self, i: int) -> None:
+        """Begin robot `i`, which was killed, anew; it takes part when the world has called it."""
+        self.robots[i] = self._robot(i)
+
+    def _inject(self, inject: Inject) -> None:
+        """A planned crash ends the robot, its return begins a new one; one that hangs is only not spoken to."""
+        if inject.action == KILL:
+            self.kill(inject.robot)
+        elif inject.action == CONTINUE and not self.robots[inject.robot].alive:
+            self.restart(inject.robot)
+
     def _pump_world(self) -> bool:
         """Handle what has arrived at the world; whether anything had."""
         session, inbox = self.session, self.bus.inbox
-        any_event = bool(inbox)
+        any_event = bool(inbox) or session.idle
         while inbox:
             event = inbox.popleft()
             complete = False
@@ -103,10 +145,16 @@ class MemorySwarm:
                     complete = session.take_drive(message)
                 elif isinstance(message, Report):
                     session.take_report(message)
+                elif isinstance(message, Linked):
+                    session.take_linked(message)
+                    for robot in session.returned:
+                        session.admit(robot)
             elif isinstance(event, Lost) and (lost := keys.robot_of(event.name)) is not None:
                 complete = session.lose(lost)
             if complete:
                 session.step()
+        if session.idle:
+            session.step()
         return any_event
 
 
@@ -117,6 +165,7 @@ def run_in_memory(
     wire: bool = False,
     observe: Callable[[MemorySwarm], bool] | None = None,
     tell: Callable[[Event], None] | None = None,
+    history: Histories | None = None,
 ) -> Outcome:
     """Run `scenario` to its end.
 
@@ -124,8 +173,9 @@ def run_in_memory(
         wire: send every message through the codec, as over Zenoh.
         observe: called after every tick; False ends the run as interrupted.
         tell: called with every event.
+        history: where every member writes down what it did (`protocol.history.file`); the caller closes it.
     """
-    swarm = MemorySwarm(scenario, wire=wire, tell=tell)
+    swarm = MemorySwarm(scenario, wire=wire, tell=tell, history=history, run=run)
     session = swarm.session
     start = time.perf_counter()
     swarm.start()
@@ -133,4 +183,7 @@ def run_in_memory(
         swarm.tick()
         if observe is not None and not observe(swarm):
             session.end(INTERRUPTED)
-    return outcome(session, run, time.perf_counter() - start, swarm.bus.counters)
+    ended = outcome(session, run, time.perf_counter() - start, swarm.bus.counters)
+    if swarm.history is not None:
+        swarm.history.result(ended)
+    return ended

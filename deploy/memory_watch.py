@@ -8,6 +8,7 @@ from pathlib import Path
 
 from deploy.launch.watcher import Watcher
 from deploy.memory_run import MemorySwarm, run_in_memory
+from protocol.history.file import Histories, HistoryFolder
 from protocol.keys import robot_of
 from protocol.messages import Event, Message, Outcome, Progress
 from protocol.scenario import Scenario
@@ -17,10 +18,23 @@ PROGRESS_PERIOD = 0.1  # wall-clock s
 FLUSH_PERIOD = 0.5  # wall-clock s
 
 
-def run_watched(run: str, scenario: Scenario, watcher: Watcher, record: Path | None, *, view: bool) -> Outcome:
-    """Run in memory; record when asked to."""
+def run_watched(
+    run: str, scenario: Scenario, watcher: Watcher, record: Path | None, *, view: bool, history: Path | None = None
+) -> Outcome:
+    """Run in memory; record, and keep histories in a folder, when asked to."""
+    histories = HistoryFolder(history) if history is not None else None
+    try:
+        return _run_watched(run, scenario, watcher, record, histories, view=view)
+    finally:
+        if histories is not None:
+            histories.close()
+
+
+def _run_watched(
+    run: str, scenario: Scenario, watcher: Watcher, record: Path | None, histories: Histories | None, *, view: bool
+) -> Outcome:
     if record is None and not view:
-        return run_in_memory(scenario, run=run, tell=watcher.event, observe=_Progress(watcher))
+        return run_in_memory(scenario, run=run, tell=watcher.event, observe=_Progress(watcher), history=histories)
     from deploy.recorder import Recording
 
     recording = Recording(scenario, path=record, view=view, run=run)
@@ -31,7 +45,7 @@ def run_watched(run: str, scenario: Scenario, watcher: Watcher, record: Path | N
             watcher.event(event)
             recording.take(event)
 
-        outcome = run_in_memory(scenario, run=run, tell=tell, observe=observer)
+        outcome = run_in_memory(scenario, run=run, tell=tell, observe=observer, history=histories)
         recording.take(outcome)
         return outcome
     finally:

@@ -8,6 +8,9 @@
 | robot/{i}/shared       | robot i -> its neighbours        | consensus, fusion and group state            |
 | robot/{i}/drive        | robot i -> world                 | wheel torques                                |
 | robot/{i}/report       | robot i -> world                 | last word: final estimate, counters          |
+| robot/{i}/resume       | world -> robot i                 | after a hang: the tick of its next reading   |
+| robot/{i}/linked       | robot i -> world                 | who of its neighbours is linked to it now    |
+| inject                 | world -> launcher                | a planned fault of a process is due          |
 | robot/{i}/belief       | robot i -> recorder              | telemetry, best effort                       |
 | truth, field, events   | world -> recorder                | telemetry, best effort                       |
 | progress, outcome      | world -> launcher                | how it goes, how it ended                    |
@@ -23,6 +26,7 @@ ROOT = "odour"
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
 READING, SHARED, DRIVE, REPORT, BELIEF = "reading", "shared", "drive", "report", "belief"
+RESUME, LINKED, INJECT = "resume", "linked", "inject"
 TRUTH, FIELD, EVENTS, PROGRESS, OUTCOME, HALT = "truth", "field", "events", "progress", "outcome", "halt"
 SCENARIO, JOIN = "scenario", "join"
 

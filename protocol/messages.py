@@ -40,6 +40,7 @@ class Reading(Message, frozen=True, array_like=True, gc=False):
     concentration: Number  # ppt
     hears: Annotated[tuple[tuple[int, int], ...], RECORDS] = ()  # lock-step: the (neighbour, tick) states to wait for
     wind_past: Annotated[tuple[tuple[Number, Number], ...], RECORDS] = ()  # tick 0: wind before the start, oldest first
+    slip: Number = 0.0  # real time: by how much the world's schedule has moved on the wall clock, s
 
 
 class Shared(Message, frozen=True, array_like=True, gc=False):
@@ -90,6 +91,29 @@ class Report(Message, frozen=True, array_like=True, gc=False):
     received: int
     dropped: int  # came too late, twice, or too many to keep
     refused: int  # malformed, foreign, from the wrong sender
+
+
+class Resume(Message, frozen=True, array_like=True, gc=False):
+    """World to a robot that does not take part at present: your next reading is that of tick `tick`; answer `Linked`."""
+
+    robot: int
+    tick: int
+
+
+class Linked(Message, frozen=True, array_like=True, gc=False):
+    """Robot to world: who of my neighbours is linked to me now. In answer to `Resume`, and whenever it changes."""
+
+    robot: int
+    tick: int  # of the `Resume` that this answers; -1: none
+    links: tuple[int, ...]
+
+
+class Inject(Message, frozen=True, array_like=True, gc=False):
+    """World to launcher: a planned fault of a robot's process is due."""
+
+    robot: int
+    tick: int
+    action: str  # "stop" (SIGSTOP) | "continue" (SIGCONT) | "kill" (SIGKILL)
 
 
 class Halt(Message, frozen=True, array_like=True, gc=False):
@@ -181,6 +205,10 @@ class Outcome(Message, frozen=True, array_like=True, gc=False):
     ended: str  # "found" | "time out" | "interrupted" | a failure, as a sentence
     failed: bool  # processes failed beyond what the scenario planned
     first_detection: Number | None  # s
+    clock: str = "lockstep"  # or "realtime": such a run does not repeat, its digest only names it
+    missed: tuple[int, ...] = ()  # real time: control periods without an answer, per robot
+    behind: Number = 0.0  # real time: furthest that the world was behind the wall clock, s
+    slip: Number = 0.0  # real time: by how much it gave up to catch up, s
 
 
 class Ask(Message, frozen=True, array_like=True, gc=False):

@@ -17,11 +17,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m robot_agent")
     parser.add_argument("--run", required=True)
     parser.add_argument("--place", type=Path, required=True)
-    parser.add_argument("--leash", action="store_true")
+    parser.add_argument("--history", type=Path)
+    for flag in ("--leash", "--rejoin"):
+        parser.add_argument(flag, action="store_true")
     given = parser.parse_args()
 
     def serve() -> None:
-        RobotProcess(given.run, msgspec.json.decode(given.place.read_bytes(), type=RobotPlace)).serve()
+        place = msgspec.json.decode(given.place.read_bytes(), type=RobotPlace)
+        RobotProcess(given.run, place, history=given.history, rejoin=given.rejoin).serve()
 
     return serve_until_done(serve, leash=given.leash, folder=given.place.parent)
 

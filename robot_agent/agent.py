@@ -1,7 +1,8 @@
 """One robot: from a reading to what it tells its neighbours, and from what it hears to what it drives.
 
-Rules: pure; a tick is `sense(reading)` and then `act(heard)`, in this order, once each. The same object runs in a
-process of its own over Zenoh and beside others in memory, bit for bit alike.
+Rules: pure; a tick is `sense(reading)` and then `act(heard)`, in this order, once each. In real time ticks may be
+missing, then a decision is due at the first tick after its instant, and the exchange of the missing ticks is missing,
+too. The same object runs in a process of its own over Zenoh and beside others in memory, bit for bit alike.
 """
 
 from __future__ import annotations
@@ -15,7 +16,10 @@ from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
 from robot_agent.interfaces import Around, Plan
 from robot_agent.neighbours import Neighbours
+from robot_agent.observer import Observer
 from robot_agent.planning.search import CrosswindSearch
+from robot_agent.rejoin import Rejoin, at_rest
+from robot_agent.validation import Validation
 
 
 class Agent:
@@ -24,6 +28,8 @@ class Agent:
     def __init__(self, scenario: RobotScenario) -> None:
         parts = algorithm(scenario.algorithm)
         self.robot = scenario.robot
+        self.scenario = scenario
+        self.observer: Observer | None = None
         self._s = scenario
         self._decision = parts.decision(scenario)
         self._planner = parts.planner(scenario)
@@ -31,6 +37,9 @@ class Agent:
         self._search = CrosswindSearch(scenario)
         self._group = Group(self._decision.recall)
         self._neighbours = Neighbours(scenario)
+        self._rejoin = Rejoin(scenario)
+        self.validation = Validation(scenario, self._controller)
+        self._near2 = scenario.repulsion.d**2  # silent robots farther than that push and pull nobody, m^2
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self._own: Own | None = None
@@ -41,8 +50,13 @@ class Agent:
 
     @property
     def decision_due(self) -> bool:
-        """Whether the tick that was sensed last is one of decision."""
-        return self._own is not None and self._own.tick % self._ticks_per_decision == 0
+        """Whether the tick that was sensed last is one of decision, or the first one after readings that were missed."""
+        return self._own is not None and self._own.due(self._ticks_per_decision)
+
+    @property
+    def fuses(self) -> bool:
+        """Whether its decision filters and fuses (3.26)."""
+        return self._decision.fuses
 
     @property
     def estimate(self) -> tuple[float, float] | None:
@@ -52,21 +66,26 @@ class Agent:
 
     def sense(self, reading: Reading) -> Shared:
         """Take a reading; what to tell the neighbours at this tick."""
-        own = self._own = Own(reading, self._s.body)
+        before = self._own
+        own = self._own = Own(reading, self._s.body, None if before is None else before.tick)
+        if before is None:
+            self._rejoin.sense(own)
         if reading.wind_past:
             self._decision.prefill(reading)
         if self.decision_due:
             self._decision.record(own)
-            self._detected = own.concentration > self._s.decision.threshold
+            # Who does not yet know what the group knows has nothing to say to it.
+            ready = not self._rejoin.listening
+            self._detected = ready and own.concentration > self._s.decision.threshold
             if self._detected:
                 self._group.detect(own.t, own.concentration, own.x, own.y)
                 self._decision.detect(own)
-            if self._detected or self._at_once:
+            if self._detected or (self._at_once and ready):
                 self._begin(own)
-            if not self._begun and not self._group.started:
+            if ready and not self._begun and not self._group.started:
                 self._plan = self._search.plan(own, self._group)
         group, (fusion_x, fusion_y), (h_x, h_y) = self._group, self._decision.state, self._decision.h
-        return Shared(
+        shared = Shared(
             self.robot,
             own.tick,
             own.x,
@@ -91,6 +110,9 @@ class Agent:
             self._decision.notes(own) if self._begun else (),
             group.best_at,
         )
+        if self.observer is not None:
+            self.observer.told(shared)
+        return shared
 
     def act(self, heard: Iterable[Shared]) -> Drive:
         """Take the neighbours' states of this tick; the torques to drive with until the next."""
@@ -98,12 +120,17 @@ class Agent:
         if own is None:
             raise RuntimeError("act() needs a reading first: call sense()")
         neighbours, group = self._neighbours, self._group
-        heard = list(heard)
+        arrived = list(heard)
+        heard = self.validation.sift(own, arrived)
         neighbours.hear(own.tick, heard)
-        for state in heard:
-            group.merge(state)
         others = neighbours.others(own.tick)
-        if group.started or self._begun:
+        waits = self._rejoin.listening and not self._rejoin.hear(own, neighbours.fresh)
+        if not waits:
+            for state in heard:
+                group.merge(state)
+        if waits:
+            self._plan = at_rest(own)
+        elif group.started or self._begun or self._at_once:
             self._begin(own)
             if self.decision_due or self._plan is None:
                 self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
@@ -115,9 +142,20 @@ class Agent:
         else:
             # The heading may have changed by what was heard in this very tick.
             self._plan = self._search.plan(own, group)
+        x, y = own.x, own.y
+        others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
-        return Drive(self.robot, own.tick, tau_left, tau_right)
+        drive = Drive(self.robot, own.tick, tau_left, tau_right)
+        if self.observer is not None:
+            self.observer.acted(arrived, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)
+        return drive
+
+    @property
+    def rejoined(self) -> int | None:
+        """The tick at which a robot that joined a running swarm had taken back what the group knows; None: it has been
+        there from the start, or it still listens."""
+        return self._rejoin.done_at
 
     def belief(self, links: tuple[int, ...], dropped: int, refused: int) -> Belief:
         """What the robot thinks after `act`, for the recorder."""
@@ -143,7 +181,7 @@ class Agent:
             heard=tuple(s.robot for _, s in self._neighbours.fresh),
             links=links,
             dropped=dropped,
-            refused=refused,
+            refused=refused + self.validation.total,
         )
 
     def _begin(self, own: Own) -> None:
@@ -151,5 +189,7 @@ class Agent:
             self._begun = True
             self._plan = None  # the search is over
             self._decision.begin(own)
+            if self._rejoin.joined_at is not None:
+                self._decision.rejoin(own, self._neighbours.fresh)
 
 

@@ -14,16 +14,18 @@ from protocol.scenario.sections import Body
 class Own:
     """What a robot knows of its own motion at one tick, in hand coordinates, and what it senses there."""
 
-    __slots__ = ("concentration", "lever", "nu", "omega", "swing", "t", "theta", "tick", "vx", "vy", "wind_x", "wind_y",
-                 "x", "y")  # fmt: skip
+    __slots__ = ("before", "concentration", "lever", "nu", "omega", "swing", "t", "theta", "tick", "vx", "vy", "wind_x",
+                 "wind_y", "x", "y")  # fmt: skip
 
-    def __init__(self, reading: Reading, body: Body) -> None:
+    def __init__(self, reading: Reading, body: Body, before: int | None = None) -> None:
+        """`before`: tick of the reading before this one; None: the tick before, as always in lock-step."""
         L = body.hand
         c, s = cos(reading.theta), sin(reading.theta)
         nu, omega = reading.nu, reading.omega
         self.lever = 0.5 * body.axle / L  # what a sideways acceleration costs the wheels, compared with a forward one
         self.swing = L * omega * omega  # the hand's acceleration towards the axle by turning alone, m/s^2
         self.tick = reading.tick
+        self.before = reading.tick - 1 if before is None else before
         self.t = reading.t
         self.theta = reading.theta
         self.nu = nu
@@ -35,6 +37,10 @@ class Own:
         self.wind_x = reading.wind_x
         self.wind_y = reading.wind_y
         self.concentration = reading.concentration
+
+    def due(self, every: int) -> bool:
+        """Whether something that is done once in `every` ticks is due: such an instant has come since the last reading."""
+        return self.tick // every > self.before // every
 
 
 def wheel_torques(ux: float, uy: float, own: Own, body: Body) -> tuple[float, float]:

@@ -51,6 +51,8 @@ class Decision(Protocol):
     estimate: Estimate
     recall: float = 0.0  # how long the best concentration counts (`robot_agent.recall`), s; 0: for ever
     decides: bool = True  # False: h is a place to drive to, nothing is said about the source
+    fuses: bool = False  # whether `estimate` is a Kalman filter's and `state` the fusion's (3.26) with `input`
+    input: Point | None = None  # u_i of the fusion, m; None: it did not measure
 
     def prefill(self, reading: Reading) -> None:
         """Take the wind that was recorded before the start."""
@@ -63,6 +65,10 @@ class Decision(Protocol):
     def begin(self, own: Own) -> None:
         """Someone has detected the odour for the first time (or the algorithm begins at once)."""
         ...
+
+    def rejoin(self, own: Own, fresh: Fresh) -> None:
+        """After `begin` when this robot joins a swarm that is on its way: take back what the neighbours know."""
+        return
 
     def detect(self, own: Own) -> None:
         """This robot detects the odour now."""
@@ -99,6 +105,10 @@ class Controller(Protocol):
     def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
         """u_i, m/s^2."""
         ...
+
+    def believes(self, own: Own, state: Shared) -> bool:
+        """Whether a neighbour's own numbers (`Shared.virtual`) can be true (robot_agent.validation)."""
+        return True
 
     def virtual(self) -> tuple[float, ...]:
         """Own numbers to tell the neighbours at the next tick (`Shared.virtual`)."""

@@ -28,6 +28,17 @@ class WindMemory:
         """Add what was recorded before the start, oldest first."""
         self._samples.extend(winds)
 
+    def reaches(self, x: float, y: float, dt: float, arena: Arena) -> bool:
+        """Whether it goes back far enough for a measurement at (x, y): it is full, or odour released before its first
+        sample would have come from outside the arena. A shorter one puts the source too near, at half of its length."""
+        if len(self._samples) == self._samples.maxlen:
+            return True
+        sums = self.displacements(dt)
+        if not sums:
+            return False
+        sx, sy = x - sums[-1][0], y - sums[-1][1]
+        return not (arena.x_min < sx < arena.x_max and arena.y_min < sy < arena.y_max)
+
     def displacements(self, dt: float) -> list[tuple[float, float]]:
         """v(t_l, t_k) for every release time t_l in memory, latest first, m: sums of u(i) dt, below (3.4)."""
         x = y = 0.0

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from protocol.bus import Counters
 from protocol.messages import Report
+from robot_agent.realtime_session import RealtimeRobotSession
 from robot_agent.session import RobotSession
 
 
-def report(session: RobotSession, counters: Counters) -> Report:
+def report(session: RobotSession | RealtimeRobotSession, counters: Counters) -> Report:
     """Final decision and counters."""
     estimate = session.agent.estimate
     h_x, h_y = estimate or (0.0, 0.0)
@@ -19,5 +20,5 @@ def report(session: RobotSession, counters: Counters) -> Report:
         counters.sent,
         counters.received,
         counters.dropped + session.dropped,
-        counters.refused,
+        counters.refused + session.agent.validation.total,
     )

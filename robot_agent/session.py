@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from protocol.messages import Drive, Reading, Shared
+from protocol.scenario.faults import HISTORY  # ticks that a state is kept, for readings that ask for an older one
 from robot_agent.agent import Agent
-
-HISTORY = 64  # ticks that a neighbour's state is kept, for readings that ask for an older one (radio delay)
+from robot_agent.faults import false_sense
 
 
 class RobotSession:
@@ -22,29 +22,38 @@ class RobotSession:
         self.agent = agent
         self.tick = -1
         self.dropped = 0
+        self._sense = false_sense(agent)
         self._tell = tell
         self._drive = drive
         self._states: dict[int, dict[int, Shared]] = {}  # tick -> neighbour -> its state
         self._hears: tuple[tuple[int, int], ...] = ()
         self._missing: set[tuple[int, int]] = set()
+        self._gone: set[int] = set()  # neighbours that no link leads to now
         self.waiting = False  # for states of neighbours
+        self._answer: Drive | None = None  # of this tick
 
     def take_reading(self, reading: Reading) -> bool:
         """Begin the next tick; whether the tick was finished at once."""
         tick = reading.tick
         if tick != self.tick + 1 or reading.robot != self.agent.robot or self.waiting:
-            self.dropped += 1
+            if tick == self.tick and reading.robot == self.agent.robot and self._answer is not None:
+                self._drive(self._answer)  # a world that came back does not know it
+            else:
+                self.dropped += 1
             return False
         self.tick = tick
         states = self._states
         states.pop(tick - HISTORY, None)
-        self._tell(self.agent.sense(reading))
+        self._tell(self._sense(reading))
         self._hears = hears = reading.hears
         of_now = states.get(tick)
         if of_now is None:
             of_now = states[tick] = {}
         self._missing = {h for h in hears if h[0] not in (of_now if h[1] == tick else states.get(h[1], ()))}
+        if self._gone:
+            self._missing = {h for h in self._missing if h[0] not in self._gone}
         self.waiting = True
+        self._answer = None
         return False if self._missing else self._finish()
 
     def take_shared(self, state: Shared) -> bool:
@@ -67,15 +76,30 @@ class RobotSession:
         return False
 
     def lose(self, robot: int) -> bool:
-        """A neighbour is gone: do not wait for it; whether that finished the tick."""
+        """A neighbour is gone: do not wait for it until it is seen; whether that finished the tick."""
+        self._gone.add(robot)
         if not self.waiting:
             return False
         self._missing = {h for h in self._missing if h[0] != robot}
         return False if self._missing else self._finish()
 
+    def see(self, robot: int) -> None:
+        """A neighbour is linked (again)."""
+        self._gone.discard(robot)
+
+    def resume(self, tick: int) -> None:
+        """The next reading is that of `tick`: the world went on without this robot. What it knew it keeps; a tick that
+        was not finished is left as it is."""
+        if tick > self.tick:
+            self.tick = tick - 1
+            self.waiting = False
+            self._missing = set()
+            self._states = {k: states for k, states in self._states.items() if k > tick - HISTORY}
+
     def _finish(self) -> bool:
         states = self._states
         heard = [states[k][j] for j, k in self._hears if k in states and j in states[k]]
         self.waiting = False
-        self._drive(self.agent.act(heard))
+        self._answer = self.agent.act(heard)
+        self._drive(self._answer)
         return True

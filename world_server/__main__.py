@@ -18,6 +18,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m world_server")
     parser.add_argument("--run", required=True)
     parser.add_argument("--folder", type=Path, required=True)
+    parser.add_argument("--history", type=Path)
+    parser.add_argument("--checkpoints", type=Path)
     for flag in ("--launcher", "--recorder", "--leash"):
         parser.add_argument(flag, action="store_true")
     given = parser.parse_args()
@@ -25,7 +27,15 @@ def main() -> int:
     def serve() -> Outcome:
         scenario = msgspec.json.decode((given.folder / "scenario.json").read_bytes(), type=Scenario)
         endpoints = msgspec.json.decode((given.folder / "endpoints.json").read_bytes(), type=tuple[str, ...])
-        return WorldProcess(given.run, scenario, endpoints, recorder=given.recorder, launcher=given.launcher).serve()
+        return WorldProcess(
+            given.run,
+            scenario,
+            endpoints,
+            recorder=given.recorder,
+            launcher=given.launcher,
+            history=given.history,
+            checkpoints=given.checkpoints,
+        ).serve()
 
     return serve_until_done(serve, leash=given.leash, folder=given.folder)
 

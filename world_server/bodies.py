@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from protocol.scenario.sections import Body, Timing
+from world_server.snapshot import BodyState
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -126,6 +127,26 @@ class Bodies:
     def travelled(self) -> Array:
         """Way of the hand so far, m."""
         return np.array([r.travelled for r in self.robots])
+
+    @property
+    def braking(self) -> tuple[bool, ...]:
+        """Which robots ignore their torques now."""
+        return tuple(self._braking)
+
+    @property
+    def state(self) -> tuple[BodyState, ...]:
+        """All that the coming steps need."""
+        return tuple(
+            BodyState(r.x, r.y, r.theta, r.nu, r.omega, r.travelled, r.hand_x, r.hand_y, held)
+            for r, held in zip(self.robots, self._braking, strict=True)
+        )
+
+    def restore(self, state: tuple[BodyState, ...]) -> None:
+        """Go on from `state`."""
+        for robot, s in zip(self.robots, state, strict=True):
+            robot.x, robot.y, robot.theta, robot.nu, robot.omega = s.x, s.y, s.theta, s.nu, s.omega
+            robot.travelled, robot.hand_x, robot.hand_y = s.travelled, s.hand_x, s.hand_y
+        self._braking = [s.braking for s in state]
 
     def hands(self) -> Array:
         """Hand positions (1.8):  x_i = r_i + L (cos theta, sin theta); shape (N, 2), m."""

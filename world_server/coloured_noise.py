@@ -61,6 +61,15 @@ class ColouredNoise:
         self._noise.at(k).standard_normal(out=self._normals)
         self._rows[:2] = self._step @ self._rows
 
+    @property
+    def state(self) -> Array:
+        """x / sigma and x' / (w sigma) of every process, a copy of shape (2, count): all that the coming steps need."""
+        return self._rows[:2].copy()
+
+    @state.setter
+    def state(self, rows: Array) -> None:
+        self._rows[:2] = rows
+
     def values(self) -> Array:
         """x of every process, shape (count,)."""
         x: Array = self._sigma * self._rows[0]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from protocol.scenario import Scenario
 from world_server.plume import Plume
+from world_server.snapshot import AirState, pack, unpack
 from world_server.wind import WindField
 
 Array = NDArray[np.float64]
@@ -50,6 +51,23 @@ class Field:
             record[s] = self.wind.at_points(points.T).T
         self.advance_to(0.0)
         return record
+
+    @property
+    def state(self) -> AirState:
+        """All that the coming steps need."""
+        wind_step, flow, corners = self.wind.state
+        plume_step, released, left, room, places, births = self.plume.state
+        return AirState(
+            self._step, wind_step, pack(flow), pack(corners), plume_step, released, left, room, pack(places), pack(births)
+        )
+
+    def restore(self, s: AirState) -> None:
+        """Go on from `s`, instead of living through the warm-up."""
+        self._step = s.step
+        self.wind.state = (s.wind_step, unpack(s.flow, 2, -1), unpack(s.corners, 2, -1))
+        births = unpack(s.births, -1)
+        places = unpack(s.places, 2, births.size)
+        self.plume.restore((s.plume_step, s.released, s.left, s.room, places, births), self.wind.dt)
 
     def advance_to(self, t: float) -> None:
         """Step wind and plume up to time `t`, s; a time that is past already changes nothing."""

@@ -7,7 +7,8 @@ from math import hypot
 from protocol.bus import Counters
 from protocol.messages import Outcome
 from protocol.scenario import scenario_digest
-from world_server.session import FOUND, INTERRUPTED, TIME_OUT, WorldSession
+from world_server.realtime_session import RealtimeWorldSession
+from world_server.session import ALL_STOPPED, FOUND, INTERRUPTED, TIME_OUT, WorldSession
 
 
 def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) -> Outcome:
@@ -51,6 +52,10 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
         faults=tuple(session.faults),
         messages=messages,
         ended=ended,
-        failed=ended not in (FOUND, TIME_OUT, INTERRUPTED),
+        failed=ended not in (FOUND, TIME_OUT, INTERRUPTED, ALL_STOPPED),
         first_detection=world.first_detection,
+        clock=scenario.clock,
+        missed=tuple(session.missed) if isinstance(session, RealtimeWorldSession) else (),
+        behind=session.behind if isinstance(session, RealtimeWorldSession) else 0.0,
+        slip=session.slip if isinstance(session, RealtimeWorldSession) else 0.0,
     )

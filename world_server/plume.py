@@ -62,6 +62,23 @@ class Plume:
         """R of every filament, shape (alive,), m."""
         return self._radius(self._births[: self._n])
 
+    @property
+    def state(self) -> tuple[int, int, int, int, Array, Array]:
+        """Steps, released, left, room for filaments, their places (2, alive) and births (alive,), in their order: all
+        that the coming steps need; copies."""
+        n = self._n
+        births = self._births[:n].copy()
+        return self.step, self.released, self.left, self._births.size, self._places[:, :n].copy(), births
+
+    def restore(self, state: tuple[int, int, int, int, Array, Array], dt: float) -> None:
+        """Go on from `state`; `dt`: length of the steps, s."""
+        self.step, self.released, self.left, room, places, births = state
+        n = self._n = births.size
+        self._now = self.step * dt
+        self._places, self._births = np.empty((2, room)), np.empty(room)
+        self._places[:, :n], self._births[:n] = places, births
+        self._index = None
+
     def snapshot(self) -> NDArray[np.float32]:
         """x, y, radius of every filament for telemetry, shape (alive, 3)."""
         return np.column_stack([*self._places[:, : self._n], self.radii]).astype(np.float32)

@@ -9,24 +9,33 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import gcd
+from pathlib import Path
 
 import msgspec
 
 from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
-from protocol.messages import Answer, Ask, Drive, Join, Outcome, Progress, Report
-from protocol.scenario import Scenario, lease_ms
+from protocol.history.file import Histories, HistoryFolder
+from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Report
+from protocol.scenario import Scenario, lease_ms, scenario_digest
+from protocol.scenario.faults import Crash, Hang
 from protocol.scenario.place import place_of
-from protocol.shell import Stop, settle_memory
+from protocol.shell import Stop
 from protocol.zenoh_bus import ZenohBus, token_of
+from world_server.checkpoints import Checkpoints, Saved
+from world_server.comeback import gather_again
+from world_server.history import WorldHistory
+from world_server.lockstep import LockstepWorld
 from world_server.outcome import outcome
+from world_server.realtime import RealtimeWorld
+from world_server.realtime_session import RealtimeWorldSession
+from world_server.recoverable import RecoverableSession
+from world_server.returns import Returns
 from world_server.session import INTERRUPTED, WorldSession
 from world_server.telemetry import Telemetry
 from world_server.world import World
 
-PROGRESS_PERIOD = 0.1  # wall-clock s
 POLL = 0.02  # s between two looks at what is not an event
 LAST_WORDS = 1.0  # s that the world waits for the robots' reports
 FAREWELL = 2.0  # s that the world stays at most for the outcome to be taken
@@ -41,7 +50,9 @@ class WorldProcess:
     endpoints: tuple[str, ...]  # the world's, then each robot's
     recorder: bool = False  # wait for a recorder before the start
     launcher: bool = False  # wait for a launcher before the start, and for it to take the outcome
+    history: Path | None = None  # folder to write the history into
     say: Callable[[str], None] = lambda _: None
+    checkpoints: Path | None = None  # folder for checkpoints; one of this run that is there is gone on from
 
     def serve(self) -> Outcome:
         """Bring the swarm up, run it to its end; how it ended.
@@ -56,38 +67,61 @@ class WorldProcess:
             token_of(self.run),
             listen=(self.endpoints[0],),
             connect=(),
-            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
-            lockstep=True,
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots, self.scenario.clock),
+            lockstep=self.scenario.clock == "lockstep",
         )
+        histories = HistoryFolder(self.history) if self.history is not None else None
+        kept = Checkpoints(self.checkpoints, self.run, scenario_digest(self.scenario)) if self.checkpoints else None
+        over = False
         try:
-            return self._serve(bus)
+            ended = self._serve(bus, histories, kept)
+            over = True
+            return ended
         finally:
             bus.close()
+            if histories is not None:
+                histories.close()
+            if kept is not None:
+                kept.close(remove=over)
 
-    def _serve(self, bus: Bus) -> Outcome:
-        n = self.scenario.robots
-        for i in range(n):
-            bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
-            bus.subscribe(keys.robot(i, keys.REPORT), Report)
-        bus.serve(keys.SCENARIO, Ask)
-        bus.serve("robot/*/join", Join)
-        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=True) for i in range(n)}
+    def _serve(self, bus: Bus, histories: Histories | None, kept: Checkpoints | None) -> Outcome:
+        self._listen(bus)
+        returns = Returns(self.scenario, bus.publisher(keys.INJECT, reliable=True) if self.launcher else None)
         halt = bus.publisher(keys.HALT, reliable=True)
-        tell = bus.publisher(keys.EVENTS, reliable=False)
         truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
         progress = bus.publisher(keys.PROGRESS, reliable=False)
         result = bus.publisher(keys.OUTCOME, reliable=True)
 
         # The robots link up among themselves while the plume is warmed up here.
-        world = World(self.scenario)
-        session = WorldSession(world, send, halt, tell)
-        self._gather(bus)
+        history: WorldHistory | None = None
+
+        def end(message: Halt) -> None:
+            (halt if history is None else history.halting(halt))(message)
+
+        saved = kept.load() if kept is not None else None
+        session = self._session(bus, end, returns, kept, saved)
+        world = session.world
+        if histories is not None:  # not before: what a world that came back lived through again is written already
+            history = WorldHistory(world, self.run, histories.member(keys.WORLD))
+        if isinstance(session, RecoverableSession) and saved is not None:
+            members = [m for m, wanted in (("recorder", self.recorder), ("launcher", self.launcher)) if wanted]
+            gather_again(bus, session, members, self._answer_late, self.scenario.network.return_timeout)
+        else:
+            self._gather(bus)
+            if isinstance(session, RecoverableSession) and kept is not None:
+                kept.write(0, world.snapshot(), session.snapshot(), 0.0)
         # Whoever listens for the truth, the recorder or the launcher, is there by now.
         watched = self.recorder or bus.matched(keys.TRUTH, ())
         telemetry = Telemetry(world, truth, field) if watched else None
-        start = time.perf_counter()
+        planned = any(isinstance(fault, Crash | Hang) for fault in self.scenario.faults)
+        if planned and not self.launcher and isinstance(session, RecoverableSession):
+            session.tell("no launcher: robots that crash or hang as planned are only left out of the run")
+        start = time.perf_counter() - (saved[0].wall_s if saved is not None else 0.0)
         try:
-            self._run(bus, session, telemetry, progress)
+            if isinstance(session, RealtimeWorldSession):
+                RealtimeWorld(bus, session, telemetry, progress, self._answer_late, self.launcher).run()
+            else:
+                LockstepWorld(bus, session, telemetry, progress, returns, kept, start, self._answer_late).run()
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start
@@ -95,9 +129,38 @@ class WorldProcess:
             telemetry.tick(last=True)
         self._collect_reports(bus, session)
         ended = outcome(session, self.run, wall_s, bus.counters)
+        if history is not None:
+            history.result(ended)
         result(ended)
         self._farewell(bus)
         return ended
+
+    def _listen(self, bus: Bus) -> None:
+        for i in range(self.scenario.robots):
+            bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
+            bus.subscribe(keys.robot(i, keys.REPORT), Report)
+            bus.subscribe(keys.robot(i, keys.LINKED), Linked)
+        bus.serve(keys.SCENARIO, Ask)
+        bus.serve("robot/*/join", Join)
+
+    def _session(
+        self, bus: Bus, halt: Callable[[Halt], None], returns: Returns, kept: Checkpoints | None, saved: Saved | None
+    ) -> RecoverableSession | RealtimeWorldSession:
+        """The world and its session: new, or as they were `saved`."""
+        scenario, robots = self.scenario, range(self.scenario.robots)
+        lockstep = scenario.clock == "lockstep"
+        send = {i: bus.publisher(keys.robot(i, keys.READING), reliable=lockstep) for i in robots}
+        resume = {i: bus.publisher(keys.robot(i, keys.RESUME), reliable=True) for i in robots}
+        tell = bus.publisher(keys.EVENTS, reliable=False)
+        world = World(scenario) if saved is None else World.restore(scenario, saved[0].world)
+        if not lockstep:
+            return RealtimeWorldSession(world, send, halt, tell, resume, returns.inject)
+        journal = kept.note if kept is not None else lambda _: None
+        patient = scenario.supervision.restart != "never"
+        session = RecoverableSession(world, send, halt, tell, resume, returns.inject, journal, patient=patient)
+        if saved is not None:
+            session.restore(saved[0].session, saved[1])
+        return session
 
     def _gather(self, bus: Bus) -> None:
         """Wait until every robot has joined and every publication has its subscriber."""
@@ -130,7 +193,7 @@ class WorldProcess:
             bus.matched(keys.robot(i, keys.READING), (keys.robot_name(i),)) for i in range(self.scenario.robots)
         )
 
-    def _answer(self, asked: Asked, waiting: set[int]) -> None:
+    def _answer(self, asked: Asked, waiting: set[int] | None) -> None:
         message = asked.message
         if isinstance(message, Ask):
             asked.answer(self._place(message.robot))
@@ -140,61 +203,21 @@ class WorldProcess:
                 asked.answer(Answer(False, f"there is no robot {i}: this run has 0 to {self.scenario.robots - 1}."))
                 return
             declared = place_of(self.scenario, i, self.endpoints).scenario.linked
-            if message.links != declared:
+            if message.links != declared if waiting is not None else not set(declared).issuperset(message.links):
                 asked.answer(Answer(False, f"its links {message.links} are not the declared ones {declared}."))
                 return
-            waiting.discard(i)
+            if waiting is not None:
+                waiting.discard(i)
             asked.answer(Answer(True, ""))
+
+    def _answer_late(self, asked: Asked) -> None:
+        """Of a robot that joins a run that has begun the links are looked at when it is called."""
+        self._answer(asked, None)
 
     def _place(self, i: int) -> Answer:
         if not 0 <= i < self.scenario.robots:
             return Answer(False, f"there is no robot {i}: this run has robots 0 to {self.scenario.robots - 1}.")
         return Answer(True, msgspec.json.encode(place_of(self.scenario, i, self.endpoints)).decode())
-
-    def _run(
-        self, bus: Bus, session: WorldSession, telemetry: Telemetry | None, progress: Callable[[Progress], None]
-    ) -> None:
-        """The ticks. Every robot that is waited for either answers or is lost, so nothing waits for ever."""
-        world = session.world
-        next_progress = 0.0
-        # The field is advanced while the robots think, in batches that end where somebody looks at it.
-        batch = world.ticks_per_sample
-        if telemetry is not None:
-            batch = gcd(batch, telemetry.field_ticks)
-        sender = {keys.robot(i, keys.DRIVE): i for i in range(self.scenario.robots)}
-        session.start()
-        if telemetry is not None:
-            telemetry.tick()
-        world.prepare(batch)
-        settle_memory()
-        receive, counters = bus.receive, bus.counters
-        while session.ended is None:
-            event = receive(None)
-            complete = False
-            if isinstance(event, Delivery):
-                message = event.message
-                if isinstance(message, Drive):
-                    if sender[event.key] == message.robot:
-                        complete = session.take_drive(message)
-                    else:
-                        counters.refused += 1
-            elif isinstance(event, Lost):
-                lost = keys.robot_of(event.name)
-                complete = lost is not None and session.lose(lost)
-            elif isinstance(event, Asked):
-                event.answer(Answer(False, "the run has begun."))
-            if complete:
-                session.step()
-                if telemetry is not None:
-                    telemetry.tick()
-                if world.tick % batch == 0:
-                    world.prepare(batch)
-                now = time.perf_counter()
-                if now >= next_progress:
-                    next_progress = now + PROGRESS_PERIOD
-                    progress(
-                        Progress(world.tick, world.t, len(world.live), world.detections, world.closest)
-                    )
 
     def _collect_reports(self, bus: Bus, session: WorldSession) -> None:
         deadline = time.monotonic() + LAST_WORDS

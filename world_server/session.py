@@ -3,20 +3,33 @@
 Rules: no clock, no socket; messages go in by `take_*` and out by the publications given at the start. The world steps
 when all live robots have answered; a robot that is lost leaves the barrier at once and its body brakes. What is late,
 early, double or from a robot that is not alive is counted and dropped.
+
+Robots leave and enter at exact ticks, before anybody is told what it senses there: `suspend` takes one out; `call` asks
+one to come back, and until it was let in (`admit`) or given up (`give_up`) the tick does not begin, so that the truth
+does not depend on how long a process takes. The scenario's faults (`world_server.faults.plan`) say who and when; the
+shell says when a called robot is there, from what the robots say of their links (`returned`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from protocol.messages import Drive, Event, Halt, Reading, Report
+from protocol.messages import Drive, Event, Halt, Inject, Linked, Reading, Report, Resume
+from world_server.faults.plan import CRASH, Due, Plan
+from world_server.roster import Roster
 from world_server.world import World
 
 FOUND, TIME_OUT, INTERRUPTED = "found", "time out", "interrupted"
+ALL_STOPPED = "all robots have stopped, as planned"
+STOP, CONTINUE, KILL = "stop", "continue", "kill"  # what the launcher is asked to do to a process
+
+_NOBODY: Mapping[int, Callable[[Resume], None]] = {}
 
 
 class WorldSession:
     """Drives a `World` through the ticks of a run."""
+
+    waits_for_returns = True  # False: who is called takes part at once, whether it is there or not (real time)
 
     def __init__(
         self,
@@ -24,7 +37,10 @@ class WorldSession:
         send: Mapping[int, Callable[[Reading], None]],
         halt: Callable[[Halt], None],
         tell: Callable[[Event], None],
+        resume: Mapping[int, Callable[[Resume], None]] = _NOBODY,
+        inject: Callable[[Inject], None] = lambda _: None,
     ) -> None:
+        """`resume` reaches robots that do not take part; `inject` whoever can stop, continue and kill their processes."""
         self.world = world
         self.ended: str | None = None  # why the run is over
         self.reports: dict[int, Report] = {}
@@ -35,16 +51,34 @@ class WorldSession:
         self._tell = tell
         self._drives: dict[int, Drive] = {}
         self._started = False
+        self.plan = Plan(world.scenario)
+        self.stopped: set[int] = set()  # robots that a planned fault keeps out
+        self.awaited: set[int] = set()  # robots that were called and are not there yet
+        self._resume = resume
+        self._inject = inject
+        self._roster = Roster(world.scenario)
+        self.answered: set[int] = set()  # of the awaited ones, those that have answered
 
     @property
     def over(self) -> bool:
         """Whether the run has ended and every live robot has said its last word."""
         return self.ended is not None and self.world.live <= self.reports.keys()
 
+    @property
+    def idle(self) -> bool:
+        """Whether nobody takes part at present and the world is to step by itself, until somebody comes back."""
+        return not self.world.live and not self.awaited and self._started and self.ended is None
+
+    @property
+    def returned(self) -> list[int]:
+        """Awaited robots that have answered and whose links are back, as both ends of each say."""
+        live = self.world.live
+        return [i for i in sorted(self.awaited) if i in self.answered and self._roster.complete(i, live)]
+
     def start(self) -> None:
         """Send the readings of tick 0."""
         self._started = True
-        self._publish(self.world.readings())
+        self._begin()
 
     def take_drive(self, drive: Drive) -> bool:
         """Take a robot's answer; whether all live robots have answered now."""
@@ -60,7 +94,7 @@ class WorldSession:
 
     def take_report(self, report: Report) -> None:
         """Take a robot's last word."""
-        if self.ended is None or report.robot in self.reports:
+        if self.ended is None or report.robot in self.reports or report.robot in self.stopped:
             self.dropped += 1
         else:
             self.reports[report.robot] = report
@@ -70,7 +104,7 @@ class WorldSession:
         world = self.world
         drives, self._drives = self._drives, {}
         first = world.first_detection
-        readings = world.step(world.t, world.next_t, drives)
+        world.advance(world.t, world.next_t, drives)
         if first is None and world.first_detection is not None:
             self.tell("the odour is met for the first time", world.first_detector)
         if world.found is not None:
@@ -79,23 +113,106 @@ class WorldSession:
         elif world.t >= world.scenario.max_time - 1e-9:
             self.end(TIME_OUT)
         else:
-            self._publish(readings)
+            self._begin()
 
     def lose(self, robot: int, how: str = "lost") -> bool:
         """A robot is gone; whether all live robots have answered now."""
         world = self.world
+        self.answered.discard(robot)
         if robot not in world.live or (self.ended is not None and robot in self.reports):
             return False
         world.lose(robot)
         self._drives.pop(robot, None)
         if self.ended is None:
             text = f"robot {robot} {how} at {world.t:.2f} s"
-            self.faults.append(text)
-            self.tell(text, robot)
-            if not world.live:
+            self._note(text, robot)
+            if self._nobody_left:
                 self.end("all robots are gone")
                 return False
-        return self._started and self.ended is None and len(self._drives) == len(world.live)
+        ready = self._started and self.ended is None and not self.awaited
+        return ready and len(self._drives) == len(world.live)
+
+    def suspend(self, robot: int, how: str) -> None:
+        """A planned fault takes a robot out of the barrier at this tick: it brakes, is not heard, and gets no readings.
+
+        To be called before the readings of the tick are sent. `how`: "crash" or "hang".
+        """
+        self._inject(Inject(robot, self.world.tick, KILL if how == CRASH else STOP))
+        self.stopped.add(robot)
+        self.world.lose(robot)
+
+    def call(self, robot: int) -> None:
+        """Ask a suspended robot to take part again from this tick on; once more when a link to it has come back."""
+        if robot not in self.awaited:
+            self._inject(Inject(robot, self.world.tick, CONTINUE))
+            if not self.waits_for_returns:
+                self.admit(robot)
+                return
+            self.awaited.add(robot)
+            self.answered.discard(robot)
+        if robot in self._resume:
+            self._resume[robot](Resume(robot, self.world.tick))
+
+    def take_linked(self, linked: Linked) -> None:
+        """Take a robot's word on its links."""
+        if not 0 <= linked.robot < self.world.scenario.robots:
+            self.dropped += 1
+            return
+        self._roster.note(linked)
+        if linked.robot in self.awaited and linked.tick == self.world.tick:
+            self.answered.add(linked.robot)
+
+    def is_linked(self, robot: int) -> bool:
+        """Whether a robot that takes part still has a link to `robot`, as it says itself."""
+        return self._roster.is_seen(robot, self.world.live)
+
+    def admit(self, robot: int) -> None:
+        """A robot is there: it takes part from this tick on, and the tick begins when nobody else is awaited."""
+        self.stopped.discard(robot)
+        self.world.admit(robot)
+        self._note(f"robot {robot} is back at {self.world.t:.2f} s", robot)
+        self._awaited_no_more(robot)
+
+    def give_up(self, robot: int) -> None:
+        """A robot that was called does not come: the tick begins without it."""
+        self._note(f"robot {robot} did not come back at {self.world.t:.2f} s", robot)
+        self._awaited_no_more(robot)
+
+    def _awaited_no_more(self, robot: int) -> None:
+        if robot in self.awaited:
+            self.awaited.discard(robot)
+            if self._nobody_left:
+                self.end("all robots are gone")
+            elif not self.awaited and self.ended is None:
+                self._publish(self.world.readings())
+
+    @property
+    def _nobody_left(self) -> bool:
+        return not self.world.live and not self.awaited and not self.plan.returns_after(self.world.tick)
+
+    def _begin(self) -> None:
+        """The world is at a new tick: let happen what is due, and say what the robots sense."""
+        due = self.plan.at(self.world.tick)
+        if due is not None:
+            self._let_happen(due)
+        if not self.awaited and self.ended is None:
+            self._publish(self.world.readings())
+
+    def _let_happen(self, due: Due) -> None:
+        for robot, text in due.begun:
+            self._note(f"injected at {self.world.t:.2f} s: {text}", robot)
+        stopping = {robot for robot, _ in due.stops}
+        for robot, how in due.stops:
+            self.suspend(robot, how)
+        for robot in due.back:
+            if robot not in stopping:  # one fault goes over into the next
+                self.call(robot)
+        if self._nobody_left:
+            self.end(ALL_STOPPED)
+
+    def _note(self, text: str, robot: int) -> None:
+        self.faults.append(text)
+        self.tell(text, robot)
 
     def end(self, why: str) -> None:
         """Finish the run."""

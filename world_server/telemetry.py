@@ -25,7 +25,7 @@ class Telemetry:
         self._world = world
         self._truth = truth
         self._field = field
-        self._count = 0
+        self._count = -(-world.tick // self._truth_ticks)  # a world that came back has told of the ticks before
 
     def tick(self, *, last: bool = False) -> None:
         """Publish what is due at the world's tick; at the last one the robots in any case."""

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from protocol.scenario.sections import Source
 from world_server.bodies import Path
+from world_server.snapshot import VerdictState, pack, unpack
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -51,6 +52,16 @@ class Verdict:
     def min_pair_distance(self) -> float | None:
         """Smallest distance of two hands so far, at the ends of substeps, m; None with one robot."""
         return math.sqrt(self._pair2) if self._first.size else None
+
+    @property
+    def state(self) -> VerdictState:
+        """All that the coming ticks need."""
+        return VerdictState(self.found, pack([self._pair2, self._source_slack, self._pair_slack]))
+
+    def restore(self, state: VerdictState) -> None:
+        """Go on from `state`."""
+        self.found = Found(*state.found) if state.found else None
+        self._pair2, self._source_slack, self._pair_slack = unpack(state.numbers, 3).tolist()
 
     def judge(self, path: Path, t0: float) -> None:
         """Take in the tick that began at `t0`, s."""

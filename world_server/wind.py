@@ -95,6 +95,17 @@ class WindField:
         flow += flow_y
         return flow  # type: ignore[no-any-return]
 
+    @property
+    def state(self) -> tuple[int, Array, Array]:
+        """Steps made so far, the field (2, m*m), the corners' noise (2, 8): all that the coming steps need; copies."""
+        return self.step, self._flow.copy(), self._corners.state
+
+    @state.setter
+    def state(self, state: tuple[int, Array, Array]) -> None:
+        self.step, flow, self._corners.state = state
+        self._flow[:] = flow
+        self._slopes_at = -1
+
     def nodes_in_arena(self) -> NDArray[np.float32]:
         """Wind at the interior nodes for telemetry, shape (nodes, nodes, 2): x index, y index, component."""
         inner = self._flow.reshape(2, self._m, self._m)[:, 1:-1, 1:-1]

@@ -7,6 +7,7 @@ import sys
 import typer
 
 from deploy.cli.algorithms import algorithms
+from deploy.cli.check import check
 from deploy.cli.reproduce import reproduce
 from deploy.cli.robot import robot
 from deploy.cli.run import run
@@ -22,7 +23,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, world, robot, topology, algorithms, sweep, reproduce, view):
+for command in (run, world, robot, topology, algorithms, sweep, reproduce, check, view):
     app.command()(command)
 
 

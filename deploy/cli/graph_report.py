@@ -18,12 +18,14 @@ from protocol.topology.analysis import Analysis, Condition
 from protocol.topology.fit import rounded_up
 from protocol.topology.graph import Graph
 from protocol.topology.named import TOPOLOGIES
+from protocol.topology.robustness import MOST, robustness
 
 MOST_EIGENVALUES = 24  # different ones that are printed
 
 
 def facts(name: str, graph: Graph, analysis: Analysis, condition: Condition) -> dict[str, Any]:
     """The keys of `--json`."""
+    robust = robustness(graph)
     return {
         "topology": name,
         "robots": graph.robots,
@@ -35,6 +37,8 @@ def facts(name: str, graph: Graph, analysis: Analysis, condition: Condition) -> 
         "lambda_2": analysis.lambda_2,
         "connected": analysis.connected,
         "spanning_tree": analysis.spanning_tree,
+        "robustness": None if robust is None else robust.r,
+        "liars_withstood": None if robust is None else robust.liars,
         "condition_5_2": {
             "beta": condition.beta,
             "gamma": condition.gamma,
@@ -50,7 +54,7 @@ def print_report(console: Console, name: str, graph: Graph, analysis: Analysis, 
     about = f"  {TOPOLOGIES[name].about}" if name in TOPOLOGIES else ""
     kind = "directed" if analysis.directed else "undirected"
     console.print(Text.assemble((name, "bold"), about))
-    console.print(f"{_count(graph.robots, 'robot')}, {_count(len(graph.links()), 'link')}, {kind}\n")
+    console.print(f"{count(graph.robots, 'robot')}, {count(len(graph.links()), 'link')}, {kind}\n")
     picture = draw(graph, fine=fine)
     if picture is not None:
         console.print(picture, no_wrap=True, crop=False)
@@ -58,22 +62,30 @@ def print_report(console: Console, name: str, graph: Graph, analysis: Analysis, 
         degrees = sorted(len(graph.neighbours(i)) for i in range(graph.robots))
         console.print(f"too many robots to draw; each listens to {_span(degrees[0], degrees[-1])} others\n")
     rows = Table.grid(padding=(0, 3))
-    for label, text, style in _rows(analysis, condition):
-        rows.add_row(*(Text(each if fine else _plain(each), style) for each in (label, text)))
+    for label, text, style in (*_rows(analysis, condition), ("robustness", _robustness(graph), "")):
+        rows.add_row(*(Text(each if fine else plain(each), style) for each in (label, text)))
     console.print(rows)
 
 
 def _rows(analysis: Analysis, condition: Condition) -> Iterator[tuple[str, str, str]]:
     """What is printed below the picture: label, text, style."""
-    yield "eigenvalues of L", _eigenvalues(analysis), ""
+    yield "eigenvalues of L", eigenvalues(analysis), ""
     yield "λ₂", "none, there is one robot" if analysis.lambda_2 is None else f"{analysis.lambda_2:.4g}", ""
-    yield "connected", _yes(analysis.connected), ""
+    yield "connected", yes(analysis.connected), ""
     if analysis.directed:
-        yield "spanning tree", _yes(analysis.spanning_tree), ""
-    yield "condition (5.2)", _verdict(analysis, condition), "green" if condition.holds else "red"
+        yield "spanning tree", yes(analysis.spanning_tree), ""
+    yield "condition (5.2)", verdict(analysis, condition), "green" if condition.holds else "red"
 
 
-def _verdict(analysis: Analysis, condition: Condition) -> str:
+def _robustness(graph: Graph) -> str:
+    """How many liars the resilient fusion withstands on this graph."""
+    found = robustness(graph)
+    if found is None:
+        return f"not looked into for more than {MOST} robots"
+    return f"{found.r}-robust: the resilient fusion withstands {count(found.liars, 'liar') if found.liars else 'no liar'}"
+
+
+def verdict(analysis: Analysis, condition: Condition) -> str:
     """Whether (5.2) holds, and if not, what to do."""
     gains = f"γ = {condition.gamma:g}, β = {condition.beta:g}"
     bound = rounded_up(condition.bound)
@@ -88,14 +100,14 @@ def _verdict(analysis: Analysis, condition: Condition) -> str:
     return f"holds: {gains}; γ must be greater than {bound}"
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """`text` for a terminal that knows ASCII only."""
     for fine, plain in (("λ₂", "lambda_2"), ("γ", "gamma"), ("β", "beta"), ("×", "x"), ("\N{NO-BREAK SPACE}", " ")):
         text = text.replace(fine, plain)
     return text
 
 
-def _eigenvalues(analysis: Analysis) -> str:
+def eigenvalues(analysis: Analysis) -> str:
     """Eigenvalues in ascending order, equal ones counted."""
     words = []
     for text, group in groupby(_number(value) for value in analysis.eigenvalues):
@@ -115,9 +127,11 @@ def _span(low: int, high: int) -> str:
     return str(low) if low == high else f"{low} to {high}"
 
 
-def _yes(value: bool) -> str:
+def yes(value: bool) -> str:
+    """In words."""
     return "yes" if value else "no"
 
 
-def _count(n: int, noun: str) -> str:
+def count(n: int, noun: str) -> str:
+    """"1 robot", "2 robots"."""
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from protocol.errors import OdourswarmError, ScenarioError
+from protocol.history.file import refuse_used
 from protocol.scenario import Scenario
 from protocol.scenario.load import Override, load_scenario, parse_setting
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
@@ -37,8 +38,47 @@ def read_scenario(
         overrides += [("source.x", x, "--source"), ("source.y", y, "--source")]
     if (wind := flags.pop("wind", None)) is not None:
         overrides.append(("wind.speed", wind, "--wind"))
+    if (fusion := flags.pop("fusion", None)) is not None:
+        overrides.append(("fusion.kind", fusion, "--fusion"))
+    for name in ("restart", "checkpoint_every"):
+        if (value := flags.pop(name, None)) is not None:
+            overrides.append((f"supervision.{name}", value, "--" + name.replace("_", "-")))
+    if (speed := flags.pop("speed", None)) is not None:
+        overrides.append(("realtime.speed", speed, "--speed"))
     overrides += [(name, value, "--" + name.replace("_", "-")) for name, value in flags.items() if value is not None]
     return load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+
+
+def checkpoint_folder(folder: Path | None, scenario: Scenario) -> None:
+    """Make the folder of `--checkpoint`, if it is given.
+
+    Raises: ScenarioError when it is not to be used.
+    """
+    if folder is None:
+        return
+    if not scenario.supervision.checkpoint_every:
+        raise ScenarioError(f"--checkpoint is {folder}, and no checkpoint is due; add --checkpoint-every S.")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ScenarioError(f"--checkpoint is {folder}; it must be a folder that can be made: {reason}.") from None
+
+
+def prepare_history(folder: Path, *, new: bool = True) -> None:
+    """Make the folder of `--history`.
+
+    Args:
+        new: whether it must be without histories; a member by hand may find those of others there.
+    Raises: ScenarioError when it is not to be used.
+    """
+    if new:
+        refuse_used(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ScenarioError(f"--history is {folder}; the folder cannot be made ({reason}).") from None
 
 
 def complain(error: Exception | str) -> None:

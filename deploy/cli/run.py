@@ -12,7 +12,7 @@ import typer
 from typer import Argument, Option
 
 from deploy.cli.advice import advice
-from deploy.cli.options import INTERRUPTED, complain, read_scenario
+from deploy.cli.options import INTERRUPTED, checkpoint_folder, complain, prepare_history, read_scenario
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
 from protocol.scenario import Scenario
@@ -28,24 +28,44 @@ def run(
     source: Annotated[str | None, Option("--source", metavar="X,Y", help="Where the source is, m.")] = None,
     wind: Annotated[float | None, Option("--wind", metavar="U", help="Mean wind speed, m/s.")] = None,
     seed: Annotated[int | None, Option("--seed", help="All randomness follows from it.")] = None,
+    fusion: Annotated[str | None, Option("--fusion", help="plain (3.26), or resilient: withstands liars.")] = None,
     max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
     preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
     setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
-    clock: Annotated[str, Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
+    clock: Annotated[
+        str | None, Option("--clock", help="lockstep: as fast as the machine goes; realtime: nobody is waited for.")
+    ] = None,
+    speed: Annotated[float | None, Option("--speed", metavar="F", help="Real time: simulated s per s.")] = None,
     bus: Annotated[str, Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
     record: Annotated[Path | None, Option("--record", metavar="FILE.rrd", help="Record the run for Rerun.")] = None,
     view: Annotated[bool, Option("--view", help="Watch the run in Rerun while it goes on.")] = False,
+    history: Annotated[
+        Path | None, Option("--history", metavar="DIR", help="Everyone writes down what it did, for `check`.")
+    ] = None,
+    restart: Annotated[
+        str | None, Option("--restart", help="Robots whose process ends: never, crashed, always started again.")
+    ] = None,
+    checkpoint_every: Annotated[
+        float | None, Option("--checkpoint-every", metavar="S", help="The world can come back from the last S simulated s.")
+    ] = None,
+    checkpoint: Annotated[
+        Path | None, Option("--checkpoint", metavar="DIR", help="Where the checkpoints are kept while the run goes on.")
+    ] = None,
     json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else.")] = False,
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
     try:
-        _choice("--clock", clock, ("lockstep",))
         _choice("--bus", bus, ("zenoh", "memory"))
         _writable(record)
+        if history is not None:
+            prepare_history(history)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
-            topology=topology, wind=wind, seed=seed, max_time=max_time,
+            topology=topology, wind=wind, seed=seed, max_time=max_time, fusion=fusion, clock=clock, speed=speed,
+            restart=restart, checkpoint_every=checkpoint_every,
         )  # fmt: skip
+        checkpoint_folder(checkpoint, scenario)
+        _fits(scenario, bus, speed)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -54,7 +74,7 @@ def run(
     signal.signal(signal.SIGTERM, _terminate)
     name = f"run-{secrets.token_hex(4)}"
     try:
-        outcome = _execute(name, scenario, bus, record, view, quiet=json)
+        outcome = _execute(name, scenario, bus, record, view, history, checkpoint, quiet=json)
     except SwarmFailure as error:
         complain(error)
         raise typer.Exit(EXIT_FAILED) from None
@@ -65,17 +85,27 @@ def run(
     raise typer.Exit(EXIT_FAILED if outcome.failed else 0)
 
 
-def _execute(name: str, scenario: Scenario, bus: str, record: Path | None, view: bool, *, quiet: bool) -> Outcome:
+def _execute(
+    name: str,
+    scenario: Scenario,
+    bus: str,
+    record: Path | None,
+    view: bool,
+    history: Path | None,
+    checkpoint: Path | None,
+    *,
+    quiet: bool,
+) -> Outcome:
     from deploy.cli.progress import Display
 
     with Display(scenario, quiet=quiet) as display:
         if bus == "memory":
             from deploy.memory_watch import run_watched
 
-            return run_watched(name, scenario, display, record, view=view)
+            return run_watched(name, scenario, display, record, view=view, history=history)
         from deploy.launch.swarm import SwarmRun
 
-        return SwarmRun(name, scenario, record, view).execute(display)
+        return SwarmRun(name, scenario, record, view, history, checkpoint=checkpoint).execute(display)
 
 
 def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: bool) -> None:
@@ -92,6 +122,13 @@ def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: b
 def _choice(flag: str, value: str, allowed: tuple[str, ...]) -> None:
     if value not in allowed:
         raise ScenarioError(f'{flag} is "{value}"; it must be {" or ".join(allowed)}.')
+
+
+def _fits(scenario: Scenario, bus: str, speed: float | None) -> None:
+    if scenario.clock == "realtime" and bus == "memory":
+        raise ScenarioError('--bus is "memory", and the clock is realtime; one process runs in lock-step only: --bus zenoh.')
+    if scenario.clock == "lockstep" and speed is not None:
+        raise ScenarioError(f"--speed is {speed:g}, and lock-step goes as fast as the machine; add --clock realtime.")
 
 
 def _writable(record: Path | None) -> None:

@@ -26,9 +26,23 @@ def print_verdict(outcome: Outcome, scenario: Scenario, record: Path | None) -> 
         console.print(Text("  " + fault, style="yellow"))
     m = outcome.messages
     refused = f", {m['refused']} refused, {m['dropped']} dropped" if m["refused"] or m["dropped"] else ""
-    console.print(f"  {m['sent']} messages sent{refused}; digest {outcome.digest}")
+    if outcome.clock == "realtime":
+        console.print(f"  {_in_time(outcome)}")
+    once = " (of this run only: real time does not repeat)" if outcome.clock == "realtime" else ""
+    console.print(f"  {m['sent']} messages sent{refused}; digest {outcome.digest}{once}")
     if record is not None:
         console.print(f"  odourswarm view {record}")
+
+
+def _in_time(outcome: Outcome) -> str:
+    """How the control periods were kept."""
+    total = sum(outcome.missed)
+    text = f"{total} of {outcome.ticks * len(outcome.missed)} control periods missed"
+    if total:
+        worst = max(range(len(outcome.missed)), key=lambda i: outcome.missed[i])
+        text += f", most by robot {worst} ({outcome.missed[worst]})"
+    text += f"; the world was at most {1e3 * outcome.behind:.0f} ms behind the wall clock"
+    return text + (f" and gave up {outcome.slip:.2f} s of it" if outcome.slip else "")
 
 
 def _headline(outcome: Outcome, scenario: Scenario) -> Text:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from deploy.cli.options import be_a_member, complain, read_scenario
+from deploy.cli.options import be_a_member, checkpoint_folder, complain, prepare_history, read_scenario
 from protocol.errors import ScenarioError
 from protocol.keys import RUN_NAME
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_OK
@@ -18,6 +18,11 @@ def world(
     file: Annotated[Path | None, typer.Argument(metavar="[SCENARIO.toml]")] = None,
     setting: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
     recorder: Annotated[bool, typer.Option("--recorder", help="Wait for a recorder before the start.")] = False,
+    history: Annotated[Path | None, typer.Option("--history", metavar="DIR", help="Write down what it did.")] = None,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option("--checkpoint", metavar="DIR", help="Keep checkpoints there, and go on from one of this run."),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="The outcome as one JSON object.")] = False,
 ) -> None:
     """Own the plume, the physics and the clock of a run; start when all robots have joined.
@@ -27,6 +32,9 @@ def world(
     try:
         check_run_name(run)
         scenario = read_scenario(file, setting or [])
+        checkpoint_folder(checkpoint, scenario)
+        if history is not None:
+            prepare_history(history, new=False)
         if not scenario.network.endpoints:
             raise ScenarioError(
                 "network.endpoints is empty; a world by hand needs its own endpoint and one per robot, "
@@ -38,7 +46,9 @@ def world(
     from world_server.process import WorldProcess
 
     def serve() -> int:
-        outcome = WorldProcess(run, scenario, scenario.network.endpoints, recorder=recorder).serve()
+        endpoints = scenario.network.endpoints
+        process = WorldProcess(run, scenario, endpoints, recorder=recorder, history=history, checkpoints=checkpoint)
+        outcome = process.serve()
         if json:
             import msgspec
 

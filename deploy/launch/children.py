@@ -49,6 +49,8 @@ class Children:
 
     def start(self, name: str, module: str, arguments: Sequence[str]) -> Child:
         """Start `python -m module arguments` as member `name`."""
+        if (before := self.members.get(name)) is not None and before.process.stdin is not None:
+            before.process.stdin.close()  # it has ended; this one takes its place
         log = self.folder / f"{name.replace('/', '-')}.err"
         with log.open("wb") as stderr:
             process = subprocess.Popen(

@@ -16,12 +16,14 @@ from pathlib import Path
 import msgspec
 
 from deploy.launch.children import Children
+from deploy.launch.injector import Injector
+from deploy.launch.supervisor import Supervisor
 from deploy.launch.watcher import Watcher
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
-from protocol.messages import Event, Outcome, Progress, Truth
+from protocol.messages import Event, Inject, Outcome, Progress, Truth
 from protocol.scenario import Scenario
 from protocol.scenario.place import place_of
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -41,8 +43,10 @@ class SwarmRun:
     scenario: Scenario
     record: Path | None = None
     view: bool = False
+    history: Path | None = None  # folder for the members' histories
     truth: Callable[[Truth], None] | None = None  # told of the robots as they are, as often as `recording` says; best effort
     children: Children | None = None  # while and after it runs
+    checkpoint: Path | None = None  # folder for the world's checkpoints; none: the run's own
 
     def execute(self, watcher: Watcher) -> Outcome:
         """Start everything, watch it, clean up.
@@ -71,15 +75,18 @@ class SwarmRun:
         (folder / "scenario.json").write_bytes(msgspec.json.encode(scenario))
         (folder / "endpoints.json").write_bytes(msgspec.json.encode(endpoints))
         recorded = self.record is not None or self.view
-        children.start(
-            keys.WORLD,
-            "world_server",
-            ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else [])],
-        )
+        history = ["--history", str(self.history)] if self.history is not None else []
+        world = ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else []), *history]
+        if scenario.supervision.checkpoint_every:
+            world += ["--checkpoints", str(self.checkpoint or folder)]
+        children.start(keys.WORLD, "world_server", world)
+        robots = {}
         for i in range(n):
             place = folder / f"place-{i}.json"
             place.write_bytes(msgspec.json.encode(place_of(scenario, i, endpoints)))
-            children.start(keys.robot_name(i), "robot_agent", ["--run", self.run, "--place", str(place)])
+            robots[keys.robot_name(i)] = ["--run", self.run, "--place", str(place), *history]
+        for name, arguments in robots.items():
+            children.start(name, "robot_agent", arguments)
         if recorded:
             output = ["--record", str(self.record)] if self.record is not None else []
             children.start(
@@ -87,15 +94,23 @@ class SwarmRun:
                 "deploy.recorder",
                 ["--run", self.run, "--folder", str(folder), *output, *(["--view"] if self.view else [])],
             )
+
+        def again(name: str) -> None:
+            if name == keys.WORLD:
+                children.start(name, "world_server", world)
+            else:
+                children.start(name, "robot_agent", [*robots[name], "--rejoin"])
+
         bus = ZenohBus(self.run, "launcher", token_of(self.run), listen=(), connect=(endpoints[0],))
         try:
             bus.subscribe(keys.PROGRESS, Progress)
             bus.subscribe(keys.EVENTS, Event)
             bus.subscribe(keys.OUTCOME, Outcome)
+            bus.subscribe(keys.INJECT, Inject)
             if self.truth is not None:
                 bus.subscribe(keys.TRUTH, Truth)
             try:
-                outcome = self._watch(bus, children, watcher)
+                outcome = self._watch(bus, children, watcher, again)
             except KeyboardInterrupt:
                 self._interrupt(bus, children)
                 raise
@@ -111,22 +126,35 @@ class SwarmRun:
             watcher.event(Event(outcome.ticks, outcome.time, -1, words))
         return outcome
 
-    def _watch(self, bus: Bus, children: Children, watcher: Watcher) -> Outcome:
+    def _watch(self, bus: Bus, children: Children, watcher: Watcher, again: Callable[[str], None]) -> Outcome:
         begun = False
+        injector = Injector(children)
+        tick, t = 0, 0.0
+        supervisor = Supervisor(
+            self.scenario, children, again, lambda robot, text: watcher.event(Event(tick, t, robot, text))
+        )
         while True:
             event = bus.receive(POLL)
             if isinstance(event, Delivery):
                 message = event.message
                 if isinstance(message, Outcome):
+                    injector.end()
                     return message
+                if isinstance(message, Inject):
+                    if message.action == "kill":
+                        supervisor.planned(message)
+                    injector.do(message)
                 if isinstance(message, Progress):
                     begun = True
+                    tick, t = message.tick, message.t
                     watcher.progress(message)
                 elif isinstance(message, Event):
                     watcher.event(message)
                 elif isinstance(message, Truth) and self.truth is not None:
                     self.truth(message)
-            elif event is None or isinstance(event, Lost):
+            if begun and (event is None or not isinstance(event, Delivery) or isinstance(event.message, Event | Inject)):
+                supervisor.look(time.monotonic())
+            if (event is None or isinstance(event, Lost)) and not (begun and supervisor.keeps_world):
                 self._look_after(children, begun)
 
     def _look_after(self, children: Children, begun: bool) -> None:

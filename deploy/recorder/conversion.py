@@ -42,7 +42,9 @@ class Conversion:
         self._scenario = scenario
         self._run = run
         period = scenario.timing.decision
-        self._watch = LinkWatch(scenario.graph, scenario.robots, period)
+        self._watch = LinkWatch(
+            scenario.graph, scenario.robots, period, scenario.schedule, scenario.graph_options.period
+        )
         self._board = Board(scenario.robots, period)
         self._bodies = BodyLayer(scenario)
         self._fields = FieldLayer(scenario)

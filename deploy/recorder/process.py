@@ -15,7 +15,7 @@ from pathlib import Path
 
 from deploy.recorder.recording import Recording
 from protocol import keys
-from protocol.bus import Bus, Delivery, Lost
+from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
 from protocol.scenario import Scenario, lease_ms
@@ -49,7 +49,7 @@ class RecorderProcess:
             token_of(self.run),
             listen=(),
             connect=self.endpoints,
-            lease_ms=lease_ms(self.scenario.network, self.scenario.robots),
+            lease_ms=lease_ms(self.scenario.network, self.scenario.robots, self.scenario.clock),
         )
         try:
             for key, kind in (
@@ -76,6 +76,9 @@ class RecorderProcess:
 
     def _listen(self, bus: Bus, recording: Recording) -> None:
         next_flush = time.monotonic() + FLUSH_PERIOD
+        supervision = self.scenario.supervision
+        patience = supervision.world_within if supervision.checkpoint_every else 0.0  # a world may come back
+        gone: float | None = None  # since when the world is, s
         try:
             while True:
                 event = bus.receive(max(0.0, next_flush - time.monotonic()))
@@ -84,6 +87,10 @@ class RecorderProcess:
                     if isinstance(event.message, Outcome):
                         return
                 elif isinstance(event, Lost) and event.name == keys.WORLD:
+                    gone = time.monotonic()
+                elif isinstance(event, Seen) and event.name == keys.WORLD:
+                    gone = None
+                if gone is not None and time.monotonic() - gone >= patience:
                     raise SwarmFailure("the world is gone; the recording holds what was heard until then.")
                 if time.monotonic() >= next_flush:
                     recording.flush()

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from protocol.errors import ScenarioError
+from protocol.scenario.near import near
 from protocol.scenario.schema import show, tables, value_types
-from protocol.scenario.settings import Setting, named, near, read_settings
+from protocol.scenario.settings import Setting, named, read_settings
 from protocol.scenario.toml_file import read_toml
 
 OWN = ("title", "seeds", "grid", "cells")  # what a scenario file does not have

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from deploy.sweep.spec import Spec, read_spec
 from protocol.errors import ScenarioError
+from protocol.scenario.near import near
 from protocol.scenario.schema import show
-from protocol.scenario.settings import near
 
 FOLDER = Path(__file__).parent.parent / "studies"
 

@@ -1,7 +1,6 @@
 """Scenario files: their tables, how they are read and checked, presets, and what a robot may know of them."""
 
 from protocol.scenario.scenario import (
-    Edge,
     RobotScenario,
     Scenario,
     lease_ms,
@@ -9,5 +8,6 @@ from protocol.scenario.scenario import (
     robot_view,
     scenario_digest,
 )
+from protocol.scenario.stage import Edge, Stage
 
-__all__ = ["Edge", "RobotScenario", "Scenario", "lease_ms", "linked_to", "robot_view", "scenario_digest"]
+__all__ = ["Edge", "RobotScenario", "Scenario", "Stage", "lease_ms", "linked_to", "robot_view", "scenario_digest"]

@@ -6,9 +6,12 @@ Rules: a check returns one sentence or nothing and knows nothing of files; `chec
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise
 from math import dist
 
 from protocol.errors import ScenarioError
+from protocol.scenario.faults.check import faults_in
+from protocol.scenario.resolve import union
 from protocol.scenario.scenario import Scenario, robots_per_column
 from protocol.scenario.settings import placed
 from protocol.topology.graph import fault_in
@@ -137,6 +140,26 @@ def _graph(scenario: Scenario) -> Iterator[Fault]:
         yield f"graph: {fault}.", ("graph", "robots")
 
 
+def _schedule(scenario: Scenario) -> Iterator[Fault]:
+    stages, period = scenario.schedule, scenario.graph_options.period
+    if not stages:
+        return
+    if stages[0].at != 0.0:
+        yield f"topology, entry 1: at is {stages[0].at:g}; it must be 0, or there is no graph at the start.", ("topology",)
+    for n, (one, next_one) in enumerate(pairwise(stages), 2):
+        if next_one.at <= one.at:
+            sentence = f"topology, entry {n}: at is {next_one.at:g}; it must be greater than {one.at:g}, the entry before."
+            yield sentence, ("topology",)
+    if 0.0 < period <= stages[-1].at:
+        yield (
+            f"graph_options.period is {period:g}; it must be greater than {stages[-1].at:g}, when the last stage of topology"
+            " begins, or 0 for a schedule that does not repeat.",
+            ("graph_options.period", "topology"),
+        )
+    if union(stage.edges for stage in stages) != tuple(sorted(scenario.graph)):
+        yield "graph is given and topology is a schedule, which has graphs of its own; leave one of them out.", ("graph",)
+
+
 def _potential(scenario: Scenario) -> Iterator[Fault]:
     p = scenario.ftmcs
     if p.attack > p.defence:
@@ -147,8 +170,39 @@ def _potential(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
+def _realtime(scenario: Scenario) -> Iterator[Fault]:
+    r = scenario.realtime
+    if r.catch_up >= r.late:
+        yield (
+            f"realtime.catch_up is {r.catch_up:g}; it must be less than realtime.late, which is {r.late:g}, or robots would"
+            " stop whenever the world catches up.",
+            ("realtime.catch_up", "realtime.late"),
+        )
+
+
+def _faults(scenario: Scenario) -> Iterator[Fault]:
+    edges = {(i, j) for i, j, _ in scenario.graph}
+    yield from faults_in(scenario.faults, scenario.robots, edges, scenario.timing.tick)
+
+
+def _supervision(scenario: Scenario) -> Iterator[Fault]:
+    s = scenario.supervision
+    if s.backoff > s.max_backoff:
+        yield (
+            f"supervision.backoff is {s.backoff:g}; it must be at most supervision.max_backoff, which is {s.max_backoff:g}.",
+            ("supervision.backoff", "supervision.max_backoff"),
+        )
+    if s.checkpoint_every and scenario.clock != "lockstep":
+        yield (
+            f'supervision.checkpoint_every is {s.checkpoint_every:g}; it must be 0 with clock = "{scenario.clock}", for'
+            " only in lock-step a world can go on where it was.",
+            ("supervision.checkpoint_every", "clock"),
+        )
+
+
 CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (
-    _arena, _source, _start, _timing, _drill, _network, _graph, _potential,
+    _arena, _source, _start, _timing, _drill, _network, _graph, _schedule, _faults, _potential, _realtime,
+    _supervision,
 )
 
 

@@ -9,7 +9,8 @@ The layers, each over the one before:
 
 A `case` of Table 4.6 belongs to the layer that names it last and lies below that layer's own values. So `--case 3`
 beats `wind.speed` of the file, `--wind 2` beats `--case 3`, and `source.x` of a file beats `case` of the same file.
-A `graph` belongs to its `topology`: a later layer that names a topology drops the graph of an earlier one.
+A `graph` belongs to its `topology`: a later layer that names a topology drops the graph of an earlier one. The value of
+`topology` is a name or a schedule, [[topology]]; either replaces the other.
 
 Rules: every value of every layer is checked, also one that a later layer replaces; every refusal is one sentence.
 """
@@ -23,11 +24,13 @@ import msgspec
 
 from protocol.errors import ScenarioError
 from protocol.scenario.check import check
+from protocol.scenario.near import near
 from protocol.scenario.presets import PRESETS, case_values
 from protocol.scenario.resolve import resolve
 from protocol.scenario.scenario import Scenario
 from protocol.scenario.schema import one_of, show
-from protocol.scenario.settings import Setting, named, near, parse_setting, read_settings
+from protocol.scenario.settings import Setting, named, parse_setting, read_settings
+from protocol.scenario.stage import label
 from protocol.scenario.toml_file import read_toml
 
 __all__ = ["Override", "from_layers", "load_scenario", "parse_setting"]
@@ -102,6 +105,8 @@ def build(settings: Iterable[Setting]) -> Scenario:
         inner = nested.setdefault(table, {}) if table else nested
         assert isinstance(inner, dict)
         inner[key] = setting.value
+    if isinstance(stages := nested.get("topology"), tuple):
+        nested |= {"topology": label(stages), "schedule": stages}
     return msgspec.convert(nested, Scenario)
 
 

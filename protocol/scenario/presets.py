@@ -22,6 +22,8 @@ LITERAL: dict[str, object] = {
     "planning.lost": "rest",
     "control.step": "explicit",
     "control.relay": False,
+    "control.remember": 0.0,
+    "trust.check": False,
     "repulsion.form": "switch",
     "repulsion.gap": 0.0,
     "cfpso.repulsion": False,

@@ -14,9 +14,13 @@ from msgspec import Meta
 
 from protocol.scenario import laws
 from protocol.scenario import sections as s
+from protocol.scenario.faults import AnyFault, OwnFault
+from protocol.scenario.graph_options import GraphOptions
+from protocol.scenario.realtime import Realtime
+from protocol.scenario.stage import Edge, RowStage, Stage
+from protocol.scenario.supervision import Supervision
 from protocol.scenario.table import Count, Table
-
-Edge = tuple[int, int, float]  # (i, j, a_ij): robot i listens to robot j with weight a_ij
+from protocol.scenario.trust import Trust
 
 
 class Scenario(Table, frozen=True):
@@ -25,11 +29,13 @@ class Scenario(Table, frozen=True):
     seed: Annotated[int, Meta(ge=0, le=2**63 - 1)] = 0
     robots: Count = 5  # N
     algorithm: str = "cfpso"
-    topology: str = "ring"  # a name, or the path of a graph file
+    topology: str = "ring"  # a name, or the path of a graph file; of a schedule its stages in a few words
     preset: Literal["corrected", "literal"] = "corrected"
     case: Annotated[int, Meta(ge=0, le=9)] = 0  # of Table 4.6; 0: none
     max_time: Annotated[float, Meta(gt=0, le=1e6)] = 1000.0  # simulated s; the thesis stops at 1000 or 1500
-    graph: tuple[Edge, ...] = ()  # the edges; filled in from `topology`
+    clock: Literal["lockstep", "realtime"] = "lockstep"  # wait for the robots, or follow the wall clock
+    graph: tuple[Edge, ...] = ()  # all edges that there ever are; filled in from `topology`
+    schedule: tuple[Stage, ...] = ()  # which of them when; empty: all of them always. Given as [[topology]]
     arena: s.Arena = s.Arena()
     source: s.Source = s.Source()
     wind: s.Wind = s.Wind()
@@ -38,11 +44,13 @@ class Scenario(Table, frozen=True):
     body: s.Body = s.Body()
     start: s.Start = s.Start()
     timing: s.Timing = s.Timing()
+    realtime: Realtime = Realtime()
     search: s.Search = s.Search()
     decision: s.Decision = s.Decision()
     fusion: s.Fusion = s.Fusion()
     planning: s.Planning = s.Planning()
     control: s.Control = s.Control()
+    trust: Trust = Trust()
     simple: laws.Simple = laws.Simple()
     repulsion: laws.Repulsion = laws.Repulsion()
     pso: laws.Pso = laws.Pso()
@@ -61,8 +69,11 @@ class Scenario(Table, frozen=True):
     surge: laws.Surge = laws.Surge()
     walk: laws.Walk = laws.Walk()
     drill: laws.Drill = laws.Drill()
+    graph_options: GraphOptions = GraphOptions()
     network: s.Network = s.Network()
     recording: s.Recording = s.Recording()
+    supervision: Supervision = Supervision()
+    faults: tuple[AnyFault, ...] = ()  # what goes wrong, and when
 
 
 class RobotScenario(Table, frozen=True):
@@ -72,18 +83,23 @@ class RobotScenario(Table, frozen=True):
     robots: int
     seed: int
     algorithm: str
-    row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it listens to
+    row: tuple[tuple[int, float], ...]  # (j, a_ij): whom it ever listens to
+    stages: tuple[RowStage, ...]  # whom it listens to when; empty: to its row always
+    period: float  # after which the stages begin anew, s; 0: never
     linked: tuple[int, ...]  # robots that it has a link with, in either direction
-    max_degree: float  # largest row sum of the graph: bounds the step of the consensus laws
-    complete: bool  # everyone hears everyone: positions need no relaying
+    max_degree: float  # largest row sum at any time: bounds the step of the consensus laws
+    complete: bool  # everyone hears everyone at any time: positions need no relaying
     arena: s.Arena
     body: s.Body
+    clock: Literal["lockstep", "realtime"]
     timing: s.Timing
+    realtime: Realtime
     search: s.Search
     decision: s.Decision
     fusion: s.Fusion
     planning: s.Planning
     control: s.Control
+    trust: Trust
     simple: laws.Simple
     repulsion: laws.Repulsion
     pso: laws.Pso
@@ -103,6 +119,8 @@ class RobotScenario(Table, frozen=True):
     walk: laws.Walk
     drill: laws.Drill
     network: s.Network
+    supervision: Supervision
+    faults: tuple[OwnFault, ...]  # what it acts out itself: how it lies, how its clock is wrong
 
 
 def robots_per_column(scenario: Scenario) -> int:
@@ -111,9 +129,11 @@ def robots_per_column(scenario: Scenario) -> int:
     return max(1, int((scenario.arena.y_max - start.y) // start.spacing) + 1)
 
 
-def lease_ms(network: s.Network, robots: int) -> int:
+def lease_ms(network: s.Network, robots: int, clock: str) -> int:
     """After how long a silent link is dead, ms: `network.lease_ms`, and longer for more than ten robots, which share a
-    machine's processors and would otherwise lose each other while they start."""
+    machine's processors and would otherwise lose each other while they start. In real time who is lost comes back."""
+    if clock == "realtime":
+        return network.lease_ms
     return max(network.lease_ms, network.lease_ms * robots // 10)
 
 
@@ -125,25 +145,41 @@ def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:
 
 def robot_view(scenario: Scenario, i: int) -> RobotScenario:
     """What robot `i` may know of `scenario`."""
-    row = tuple(sorted((j, a_ij) for k, j, a_ij in scenario.graph if k == i))
-    degrees: dict[int, float] = {}
-    for k, _, a_kj in scenario.graph:
-        degrees[k] = degrees.get(k, 0.0) + a_kj
-    both = set(RobotScenario.__struct_fields__) & set(Scenario.__struct_fields__) - {"robots", "seed", "algorithm"}
+    stages = scenario.schedule
+    graphs = [stage.edges for stage in stages] or [scenario.graph]
+    everyone = scenario.robots * (scenario.robots - 1)
+    both = set(RobotScenario.__struct_fields__) & set(Scenario.__struct_fields__) - {"robots", "seed", "algorithm", "faults"}
     return RobotScenario(
         robot=i,
         robots=scenario.robots,
         seed=scenario.seed,
         algorithm=scenario.algorithm,
-        row=row,
+        row=_row(scenario.graph, i),
+        stages=tuple(RowStage(stage.at, _row(stage.edges, i)) for stage in stages),
+        period=scenario.graph_options.period,
         linked=linked_to(scenario.graph, i),
-        max_degree=max(degrees.values(), default=0.0),
-        complete=len(scenario.graph) == scenario.robots * (scenario.robots - 1),
+        max_degree=max(_largest_row_sum(graph) for graph in graphs),
+        complete=all(len(graph) == everyone for graph in graphs) and not any(stage.range > 0.0 for stage in stages),
+        faults=tuple(f for f in scenario.faults if isinstance(f, OwnFault) and f.robot == i),
         **{name: getattr(scenario, name) for name in both},
     )
 
 
+def _row(graph: tuple[Edge, ...], i: int) -> tuple[tuple[int, float], ...]:
+    return tuple(sorted((j, a_ij) for k, j, a_ij in graph if k == i))
+
+
+def _largest_row_sum(graph: tuple[Edge, ...]) -> float:
+    degrees: dict[int, float] = {}
+    for k, _, a_kj in graph:
+        degrees[k] = degrees.get(k, 0.0) + a_kj
+    return max(degrees.values(), default=0.0)
+
+
 def scenario_digest(scenario: Scenario) -> str:
-    """16 hex digits that name all that decides the run; neither the wires nor the recording do."""
-    decisive = msgspec.structs.replace(scenario, network=s.Network(), recording=s.Recording())
+    """16 hex digits that name all that decides the run; neither the wires, the recording nor supervision do, nor real
+    time's numbers in lock-step."""
+    realtime = scenario.realtime if scenario.clock == "realtime" else Realtime()
+    idle = {"network": s.Network(), "recording": s.Recording(), "supervision": Supervision(), "realtime": realtime}
+    decisive = msgspec.structs.replace(scenario, **idle)
     return blake2b(msgspec.json.encode(decisive, order="deterministic"), digest_size=8).hexdigest()

@@ -35,7 +35,7 @@ def value_types() -> dict[str, Any]:
         if name in tables():
             inner = get_type_hints(tables()[name], include_extras=True)
             types.update({f"{name}.{key}": each for key, each in inner.items()})
-        else:
+        elif name != "schedule":  # it is given as `topology`
             types[name] = kind
     return types
 

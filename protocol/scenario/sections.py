@@ -104,6 +104,7 @@ class Timing(Table, frozen=True):
     substep: Annotated[float, Meta(gt=0, le=1)] = 0.01  # physics, s
     decision: Annotated[float, Meta(gt=0, le=60)] = 1.0  # decision period, s (Table 3.1)
     stale_after: Positive = 0.5  # a neighbour's state older than this is left out of every sum, s
+    listen: Positive = 1.0  # a robot that joins late waits at most so long for neighbours before it begins alone, s
 
 
 class Search(Table, frozen=True):
@@ -140,6 +141,9 @@ class Fusion(Table, frozen=True):
     a: OpenFraction = 0.5
     input: Literal["measured", "always"] = "measured"  # lambda only for robots that measured now, or for all
     step: Literal["implicit", "explicit"] = "implicit"  # discretisation, see robot_agent.sig
+    kind: Literal["plain", "resilient"] = "plain"  # as (3.26) says, or so that `liars` neighbours cannot pull it away
+    filter: Literal["trimmed", "median"] = "trimmed"  # how, see robot_agent.resilient
+    liars: Annotated[int, Meta(ge=0, le=1000)] = 1  # F: so many of a robot's neighbours may lie
 
 
 class Planning(Table, frozen=True):
@@ -161,6 +165,7 @@ class Control(Table, frozen=True):
     relay: bool = True  # neighbours pass on whom they have heard, so that all keep clear of all
     relay_period: Positive = 0.2  # s
     relay_age: Positive = 2.0  # older states are not passed on, s
+    remember: NonNegative = 600.0  # who fell silent is kept clear of where it was last for so long, s; 0: forgotten
 
 
 class Network(Table, frozen=True):
@@ -171,6 +176,7 @@ class Network(Table, frozen=True):
     endpoints: tuple[str, ...] = ()  # world's first, then each robot's; empty: made by the launcher
     lease_ms: Annotated[int, Meta(ge=100, le=60000)] = 400  # a silent link is dead after this
     join_timeout: Positive = 30.0  # wall-clock s for the swarm to link up
+    return_timeout: Positive = 10.0  # wall-clock s that the world waits for a robot that is due back from a hang
 
 
 class Recording(Table, frozen=True):

@@ -6,13 +6,14 @@ Rules: every refusal is a ScenarioError of one sentence: which value, where, wha
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 import msgspec
 
 from protocol.errors import ScenarioError
+from protocol.scenario.faults.read import read_faults
+from protocol.scenario.near import near, near_or_all
 from protocol.scenario.schema import allowed, choices_of, convert, show, tables, value_types
 
 
@@ -48,7 +49,13 @@ def read_settings(name: tuple[str, ...], value: object, origin: str) -> Iterator
     Raises: ScenarioError for an unknown name or a value that is not allowed.
     """
     path = ".".join(name)
-    if path in value_types():
+    if path == "faults":
+        yield Setting(path, read_faults(value, origin), origin)
+    elif path == "topology" and isinstance(value, list | Mapping):
+        from protocol.scenario.schedule import read_schedule
+
+        yield Setting(path, read_schedule(value, origin), origin)
+    elif path in value_types():
         try:
             yield Setting(path, convert(path, value), origin)
         except (msgspec.ValidationError, OverflowError, RecursionError):
@@ -83,18 +90,6 @@ def where(origins: Mapping[str, str], *paths: str) -> str:
     """Where the values `paths` were given, to start a sentence with; nothing when all of them are defaults."""
     places = dict.fromkeys(origins[path] for path in paths if path in origins)
     return " and ".join(places) + ": " if places else ""
-
-
-def near(name: str, known: Iterable[str]) -> str:
-    """`; did you mean "wind"?`, or nothing when no known name is near."""
-    matches = get_close_matches(name, list(known), n=1, cutoff=0.6)
-    return f'; did you mean "{matches[0]}"?' if matches else ""
-
-
-def near_or_all(name: str, known: Iterable[str]) -> str:
-    """`; did you mean "wind"?`, or everything that is known when nothing is near."""
-    known = list(known)
-    return near(name, known) or f"; there is {', '.join(known)}."
 
 
 def _near_choice(path: str, value: object) -> str:

@@ -12,7 +12,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from protocol.errors import ScenarioError
-from protocol.scenario.scenario import Edge
+from protocol.scenario.stage import Edge
 
 if TYPE_CHECKING:
     import networkx

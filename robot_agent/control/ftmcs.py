@@ -43,6 +43,7 @@ from robot_agent.neighbours import Placed
 from robot_agent.sig import STEPS
 
 NOWHERE = (NEVER, 0.0, 0.0)
+FASTEST = 10.0  # times the top speed of a body: no virtual robot of (6.4), (6.5) gets there
 TOLD = 7  # numbers in `virtual`: the virtual robot's four, and the latest smell's time and place
 
 
@@ -57,6 +58,7 @@ class FtmcsControl(Controller):
         self._row_sum = scenario.max_degree
         self._implicit = scenario.control.step == "implicit"
         self._step = STEPS[scenario.control.step]
+        self._trust = scenario.trust
         self._top_speed = scenario.body.max_speed
         self._top = top_acceleration(scenario.body)
         self._keep = replace(scenario.repulsion, d=p.clearance)
@@ -69,6 +71,16 @@ class FtmcsControl(Controller):
 
     def virtual(self) -> tuple[float, ...]:
         return () if self._me is None else (*self._me, *self._smell)
+
+    def believes(self, own: Own, state: Shared) -> bool:
+        """The virtual robot is on its leash and no faster than the law makes it, the smell not of the future."""
+        if len(state.virtual) < TOLD:
+            return True
+        trust = self._trust
+        x, y, vx, vy, at = state.virtual[:5]
+        leash = self._p.leash
+        on_leash = leash == 0.0 or hypot(x - state.x, y - state.y) <= leash + trust.slack
+        return on_leash and hypot(vx, vy) <= FASTEST * self._top_speed and at <= own.t + trust.skew
 
     def control(self, own: Own, fresh: Fresh, others: Sequence[Placed], plan: Plan, dt: float) -> Point:
         p = self._p
@@ -98,7 +110,7 @@ class FtmcsControl(Controller):
 
     def _smell_now(self, own: Own, fresh: Fresh) -> None:
         """Remember the latest meeting with the odour in the group: it travels from neighbour to neighbour."""
-        if own.concentration > self._threshold and own.tick % self._ticks_per_decision == 0:
+        if own.concentration > self._threshold and own.due(self._ticks_per_decision):
             self._own_smell = own.t
             self._smell = max(self._smell, (own.t, own.x, own.y))
         for _, s in fresh:

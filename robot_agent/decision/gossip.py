@@ -52,7 +52,7 @@ class Gossip:
 
     def notes(self, own: Own) -> tuple[float, ...]:
         """All records in one row, at decisions; the newest ones when they are more than a message holds."""
-        if own.tick % self._ticks_per_decision:
+        if not own.due(self._ticks_per_decision):
             return ()
         known = self.records()
         if len(known) * self._width > MAX_RECORDS:

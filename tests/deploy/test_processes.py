@@ -45,6 +45,7 @@ class Swarm:
 
     def __init__(self, scenario: Scenario, **options):
         self.ticks = 0
+        self.live = 0
         self.events: list[str] = []
         self.outcome: Outcome | None = None
         self.error: BaseException | None = None
@@ -53,6 +54,7 @@ class Swarm:
 
     def progress(self, progress: Progress) -> None:
         self.ticks = progress.tick
+        self.live = progress.live
 
     def event(self, event: Event) -> None:
         self.events.append(event.text)

@@ -8,8 +8,9 @@ from recorder_helpers import RING, N, belief, pose, truth
 
 from deploy.recorder import palette
 from deploy.recorder.decisions import PATIENCE, VALID, Board
-from deploy.recorder.links import BROKEN, HEARD, SILENT, LinkWatch
+from deploy.recorder.links import BROKEN, CLOSED, HEARD, SILENT, LinkWatch
 from deploy.recorder.track import Gaps, track_of
+from protocol.scenario import Stage
 
 EVERYBODY = range(N)
 
@@ -109,6 +110,21 @@ def test_a_belief_counts_from_its_own_time_on_and_goes_stale():
     assert set(watch.at(0.5, everybody).tolist()) == {SILENT}
     assert set(watch.at(1.0, everybody).tolist()) == {HEARD}
     assert set(watch.at(1.0 + VALID + 0.1, everybody).tolist()) == {SILENT}
+
+
+def test_a_link_is_closed_while_the_schedule_or_the_range_says_so():
+    line = tuple(edge for edge in RING if abs(edge[0] - edge[1]) == 1)
+    watch = LinkWatch(RING, N, 1.0, (Stage(0.0, "ring", 0.0, RING), Stage(2.0, "line", 5.0, line)), 4.0)
+    everybody, near = np.ones(N, dtype=bool), np.array([(4.0 * i, 0.0) for i in EVERYBODY])
+    pairs = [tuple(pair) for pair in watch.pairs.tolist()]
+
+    def closed(t, points):
+        return {pair for pair, kind in zip(pairs, watch.at(t, everybody, points), strict=True) if kind == CLOSED}
+
+    assert closed(1.0, near) == set()
+    assert closed(2.0, near) == {(0, N - 1)}
+    assert closed(3.0, 2 * near) == set(pairs)
+    assert closed(4.0, 2 * near) == set()
 
 
 @given(st.sets(st.integers(0, 30)), st.randoms(use_true_random=False))

@@ -15,8 +15,10 @@ from msgspec import inspect
 from protocol.scenario import RobotScenario, Scenario, linked_to, robot_view, scenario_digest
 from protocol.scenario import sections as s
 from protocol.scenario.dump import dump_toml
+from protocol.scenario.faults import Crash, Loss
 from protocol.scenario.load import build, load_scenario, merge
 from protocol.scenario.presets import CASES, PRESETS
+from protocol.scenario.realtime import Realtime
 from protocol.scenario.schema import convert, get_value, value_types
 from protocol.scenario.settings import Setting, read_settings
 
@@ -46,6 +48,7 @@ def another(path: str) -> Any:
         "drill.centre": (1.0, 2.0),
         "drill.radii": (1.0, 2.0),
         "network.endpoints": ("tcp/127.0.0.1:7447",),
+        "faults": (Loss(probability=0.3, edges=((0, 1),)), Crash(robot=1, at=3.0)),
     }[path]
 
 
@@ -64,7 +67,16 @@ def changed(path: str) -> Scenario:
 @pytest.mark.parametrize("path", value_types())
 def test_the_digest_changes_with_every_value_that_decides_the_run_and_with_no_other(path: str) -> None:
     same = scenario_digest(changed(path)) == scenario_digest(Scenario())
-    assert same == path.startswith(("network.", "recording."))
+    assert same == path.startswith(("network.", "recording.", "realtime.", "supervision."))
+
+
+def test_the_digest_of_a_run_in_real_time_changes_with_the_speed() -> None:
+    digests = {
+        scenario_digest(Scenario(clock=clock, realtime=Realtime(speed=speed)))
+        for clock in ("lockstep", "realtime")
+        for speed in (1.0, 2.0)
+    }
+    assert len(digests) == 3
 
 
 def test_a_robot_knows_no_table_that_only_the_world_knows() -> None:
@@ -164,6 +176,7 @@ def value_of(path: str) -> st.SearchStrategy[Any]:
         "graph": st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9), numbers), max_size=3).map(tuple),
         "start.positions": st.lists(st.tuples(numbers, numbers), max_size=3).map(tuple),
         "start.headings": st.lists(numbers, max_size=3).map(tuple),
+        "faults": st.lists(st.sampled_from(another("faults")), max_size=3).map(tuple),
         "search.target": st.tuples(numbers, numbers),
         "drill.velocity": st.tuples(numbers, numbers),
         "drill.centre": st.tuples(numbers, numbers),

@@ -54,8 +54,8 @@ def test_every_named_topology_is_connected_and_free_of_faults(name: str, robots:
 
 
 def test_a_new_topology_is_one_function_and_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    def couples(n: int) -> list[tuple[int, int]]:
-        return [(i, i + 1) for i in range(0, n - 1, 2)]
+    def couples(scenario: Scenario) -> list[tuple[int, int]]:
+        return [(i, i + 1) for i in range(0, scenario.robots - 1, 2)]
 
     monkeypatch.setitem(TOPOLOGIES, "couples", Topology(couples, "two and two"))
     scenario = load_scenario(None, overrides=[("topology", "couples", "--topology"), ("robots", 4, "--robots")])

@@ -14,7 +14,7 @@ from rerun.chunk import Chunk
 
 from deploy.recorder import palette
 from deploy.recorder.chunks import colours, pixels, strips, temporal, timeless
-from deploy.recorder.links import BROKEN, HEARD, SILENT, LinkWatch
+from deploy.recorder.links import BROKEN, CLOSED, HEARD, SILENT, LinkWatch
 from deploy.recorder.track import Track
 from protocol.scenario import Scenario
 
@@ -63,8 +63,8 @@ class GraphLayer:
             return
         kinds = np.empty((len(chosen), len(self._pairs)), dtype=np.int8)
         stray: list[NDArray[np.intp]] = []
-        for row, (t, alive) in enumerate(zip(chosen.t.tolist(), chosen.alive, strict=True)):
-            kinds[row] = self._watch.at(t, alive)
+        for row, (t, alive, points) in enumerate(zip(chosen.t.tolist(), chosen.alive, chosen.points, strict=True)):
+            kinds[row] = self._watch.at(t, alive, points)
             stray.append(self._watch.undeclared)
         ends = chosen.points[:, self._pairs]  # (K, E, 2, 2)
         for entity, (kind, _, _) in LINKS.items():
@@ -75,8 +75,8 @@ class GraphLayer:
         counts = np.column_stack(
             (
                 chosen.alive.sum(axis=1),
-                np.full(len(chosen), len(self._pairs)),
-                (kinds != BROKEN).sum(axis=1),
+                (kinds != CLOSED).sum(axis=1),
+                (kinds < BROKEN).sum(axis=1),
                 (kinds == HEARD).sum(axis=1),
             )
         )
@@ -101,7 +101,7 @@ class GraphLayer:
         heads = np.stack(
             (tip + BARB * (0.6 * across - along), tip, tip - BARB * (0.6 * across + along)), axis=2
         )
-        yield from self._lines("links/direction", track, heads, kinds[:, place] != BROKEN)
+        yield from self._lines("links/direction", track, heads, kinds[:, place] < BROKEN)
 
     def _strays(self, track: Track, stray: list[NDArray[np.intp]]) -> Iterator[Chunk]:
         lines = np.concatenate([track.points[row, pairs] for row, pairs in enumerate(stray)])

@@ -1,0 +1,1 @@
+"""Promises of a run, looked at afterwards: in the spirit of Jepsen, one small file each."""

@@ -1,0 +1,1 @@
+"""Faults by the hundred: random schedules that are valid, for benchmarks and searches for trouble."""
