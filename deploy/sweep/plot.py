@@ -28,7 +28,10 @@ MEASURES: tuple[Measure, ...] = (  # name, value and interval, factor
 )
 MARKS = "osD^vP*X"
 APART = 0.012  # of the axis: lines stand so far beside each other that their intervals can be told apart
-FAR = 30.0  # largest over smallest value from which a scale is logarithmic
+NEAR = 0.1  # m: up to here a logarithmic scale is linear
+FAR = 30.0  # so many times that is far
+MOST_TICKS = 6
+CLOSE = 0.03  # of the axis
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,16 +89,18 @@ def draw(rows: Sequence[Row], grid: Sequence[str], title: str, file: Path) -> No
         for panel, measure in zip(panels[:, column], MEASURES, strict=True):
             _panel(panel, lines, measure)
         panels[-1, column].set_xlabel(axis)
+        _ticks(panels[-1, column], lines)
         if columns == 1:
             _names(panels[0, 0], lines)
     for panel, (name, *_) in zip(panels[:, 0], MEASURES, strict=True):
         panel.set_ylabel(name)
-        _scale(panel, name)
+    for row, (name, *_) in zip(panels, MEASURES, strict=True):
+        _scale(list(row), name)
     handles, names = panels[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False)
-    runs = sorted({point.cell.runs for lines in axes.values() for points in lines.values() for point in points})
-    seeds = f"{runs[0]} to {runs[-1]}" if runs[0] != runs[-1] else str(runs[0])
-    figure.suptitle(f"{title}: {seeds} runs a point, 95 % intervals" if title else f"{seeds} runs a point, 95 % intervals")
+    counts = sorted({point.cell.runs for lines in axes.values() for points in lines.values() for point in points})
+    runs = f"{counts[0]} to {counts[-1]}" if counts[0] != counts[-1] else str(counts[0])
+    figure.suptitle(f"{title + ': ' if title else ''}runs a point: {runs}; intervals: 95 %", fontsize="medium")
     figure.savefig(file, dpi=85)
 
 
@@ -112,27 +117,41 @@ def _panel(panel: Axes, lines: Lines, measure: Measure) -> None:
         ends = [interval or (value, value) for _, value, interval in known]
         below = [max(at - factor * low, 0.0) for at, (low, _) in zip(y, ends, strict=True)]
         above = [max(factor * high - at, 0.0) for at, (_, high) in zip(y, ends, strict=True)]
-        mark = MARKS[n % len(MARKS)]
-        panel.errorbar(x, y, yerr=(below, above), fmt=f"{mark}-", ms=4, lw=0.9, elinewidth=0.9, capsize=2, label=line)
+        # Where cells share a place a line from one to the next would say nothing.
+        mark = MARKS[n % len(MARKS)] + ("-" if len({point.at for point in points}) == len(points) else "")
+        panel.errorbar(x, y, yerr=(below, above), fmt=mark, ms=4, lw=0.9, elinewidth=0.9, capsize=2, label=line)
     panel.grid(alpha=0.3)
 
 
-def _scale(panel: Axes, name: str) -> None:
-    """Distances of very different sizes are drawn on a logarithmic scale."""
-    if not name.endswith(", m"):
-        panel.set_ylim(*((-4.0, 104.0) if name.endswith("%") else (0.0, None)))
-        return
-    low, high = panel.dataLim.minposy, panel.dataLim.y1
-    if high / low > FAR:
-        panel.set_yscale("log", nonpositive="clip")
+def _scale(panels: Sequence[Axes], name: str) -> None:
+    """The scale that a row of panels shares. Distances of very different sizes are drawn on a logarithmic one, which is
+    linear near 0: robots may agree to the last bit."""
+    highest = max((panel.dataLim.y1 for panel in panels if panel.dataLim.y1 > 0.0), default=1.0)
+    if name.endswith("%"):
+        panels[0].set_ylim(-4.0, 104.0)
+    elif name.endswith(", m") and highest > FAR * NEAR:
+        panels[0].set_yscale("symlog", linthresh=NEAR)
+        panels[0].set_ylim(-0.1 * NEAR, 2.0 * highest)
+    else:
+        panels[0].set_ylim(0.0, 1.1 * highest)
+
+
+def _ticks(panel: Axes, lines: Lines) -> None:
+    """A few whole numbers are all there."""
+    places = sorted({point.at for points in lines.values() for point in points})
+    if len(places) <= MOST_TICKS and all(place.is_integer() for place in places):
+        panel.set_xticks(places)
 
 
 def _names(panel: Axes, lines: Lines) -> None:
-    """The cells' names above their places."""
-    at: dict[float, list[str]] = {}
-    for points in lines.values():
-        for point in points:
-            if point.label not in at.setdefault(round(point.at, 6), []):
-                at[round(point.at, 6)].append(point.label)
+    """The cells' names above their places; of places that nearly touch, in one stack."""
+    points = sorted((point.at, point.label) for points in lines.values() for point in points)
+    room = CLOSE * (points[-1][0] - points[0][0])
+    stacks: list[tuple[float, list[str]]] = []
+    for at, label in points:
+        if not stacks or at - stacks[-1][0] > room:
+            stacks.append((at, []))
+        if label not in stacks[-1][1]:
+            stacks[-1][1].append(label)
     top = panel.secondary_xaxis("top")
-    top.set_xticks(list(at), ["\n".join(labels) for labels in at.values()], rotation=60, ha="left", fontsize=7)
+    top.set_xticks([at for at, _ in stacks], ["\n".join(names) for _, names in stacks], rotation=90, fontsize=7)
