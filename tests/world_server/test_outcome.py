@@ -12,7 +12,7 @@ from world_server.world import World
 
 def ended_with(*estimates):
     """The outcome when robot i's last word was the i-th estimate; None: it had none."""
-    session = WorldSession(World(load_scenario()), {}, lambda halt: None, lambda event: None, {}, lambda inject: None)
+    session = WorldSession(World(load_scenario(None)), {}, lambda halt: None, lambda event: None, {}, lambda inject: None)
     for i, estimate in enumerate(estimates):
         h_x, h_y = estimate or (0.0, 0.0)
         session.reports[i] = Report(i, h_x, h_y, estimate is not None, 0, 0, 0, 0)
