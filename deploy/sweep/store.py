@@ -70,8 +70,6 @@ class Store:
     def __init__(self, out: Path, plan: Plan) -> None:
         self._out, self._plan = out, plan
         self._parts = parts_of(out)
-        for left in self._parts.glob("*.tmp"):
-            left.unlink()
         known = finished(out, aside=True)
         self.rows = {job.digest: r.relabel(job, known.pop(job.digest)) for job in plan.jobs if job.digest in known}
         self.ignored = len(known)
@@ -102,8 +100,10 @@ class Store:
             self._out.unlink(missing_ok=True)  # all of its runs are aside now
         if not self._aside:
             aside_of(self._out).unlink(missing_ok=True)  # all of its runs are in the result now
-        for part in self._parts.glob("*.parquet"):
-            part.unlink()
+        # An interrupt leaves a part that is not complete as well; its row is in the result by now.
+        for pattern in ("*.parquet", "*.tmp"):
+            for part in self._parts.glob(pattern):
+                part.unlink()
         self._pending = 0
 
     def _write(self, table: pa.Table, file: Path) -> None:

@@ -97,14 +97,16 @@ def test_crash_at_any_point_of_putting_together_loses_nothing(out, plan, tmp_pat
     assert set(finished(out)) == {job.digest for job in half.jobs}
 
 
-@pytest.mark.parametrize("written", [False, True])
-def test_interrupt_while_a_row_is_added_loses_nothing(out, plan, monkeypatch, written):
+@pytest.mark.parametrize("written", ["nothing", "half", "all"])
+def test_interrupt_while_a_row_is_added_loses_nothing_and_leaves_nothing(out, plan, monkeypatch, written):
     store = opened(out, plan)
     write = r.write_table
 
-    def interrupted(*arguments):
-        if written:
-            write(*arguments)
+    def interrupted(table, file, scratch):
+        if written == "half":
+            (scratch / f"{file.name}.tmp").write_bytes(b"half a row")
+        elif written == "all":
+            write(table, file, scratch)
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
@@ -113,6 +115,7 @@ def test_interrupt_while_a_row_is_added_loses_nothing(out, plan, monkeypatch, wr
             store.add(row_of(plan.jobs[0]))
     store.compact()
     assert rows_of(out) == [row_of(plan.jobs[0])]
+    assert list(parts_of(out).iterdir()) == []
 
 
 def test_part_that_is_not_complete_is_run_again(out, plan):
