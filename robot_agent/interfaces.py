@@ -18,6 +18,9 @@ from robot_agent.kalman import Estimate
 from robot_agent.neighbours import Placed
 
 Point = tuple[float, float]
+# x0, y0 (corner of the first cell, m), cell (m), rows, and one byte per cell, row by row towards +y, within a row towards
+# +x: 255 sqrt(p / p_max), p the probability that the source is in the cell
+BeliefMap = tuple[float, float, float, int, bytes]
 Fresh = Sequence[tuple[float, Shared]]  # (a_ij, state) of the neighbours that count now
 
 SEARCH, TRACE, LOST = "search", "trace", "lost"
@@ -79,6 +82,14 @@ class Decision(Protocol):
     def notes(self, own: Own) -> tuple[float, ...]:
         """Own numbers to tell the neighbours at this tick (`Shared.notes`)."""
         return ()
+
+    def certainty(self) -> float | None:
+        """How well the position of the source is known: root of the trace of its covariance, m; None: it is not said."""
+        return None
+
+    def belief_map(self) -> BeliefMap | None:
+        """Where the source may be, for whoever watches; None: there is no such map (yet). May be slow: ask rarely."""
+        return None
 
 
 class Planner(Protocol):
