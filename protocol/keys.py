@@ -9,6 +9,7 @@
 | robot/{i}/drive        | robot i -> world                 | wheel torques                                |
 | robot/{i}/report       | robot i -> world                 | last word: final estimate, counters          |
 | robot/{i}/belief       | robot i -> recorder              | telemetry, best effort                       |
+| robot/{i}/map          | robot i -> recorder              | its map of the source, best effort           |
 | truth, field, events   | world -> recorder                | telemetry, best effort                       |
 | progress, outcome      | world -> launcher                | how it goes, how it ended                    |
 | halt                   | world -> robots, recorder        | the run is over                              |
@@ -22,7 +23,7 @@ import re
 ROOT = "odour"
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
-READING, SHARED, DRIVE, REPORT, BELIEF = "reading", "shared", "drive", "report", "belief"
+READING, SHARED, DRIVE, REPORT, BELIEF, MAP = "reading", "shared", "drive", "report", "belief", "map"
 TRUTH, FIELD, EVENTS, PROGRESS, OUTCOME, HALT = "truth", "field", "events", "progress", "outcome", "halt"
 SCENARIO, JOIN = "scenario", "join"
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protocol.messages import Belief, Drive, Reading, Shared
+from protocol.messages import Belief, BeliefMap, Drive, Reading, Shared
 from protocol.scenario import RobotScenario
 from robot_agent.algorithms import algorithm
+from robot_agent.declaration import Declaration
 from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
 from robot_agent.interfaces import Around, Plan
+from robot_agent.map_telemetry import PERIOD, map_message
 from robot_agent.neighbours import Neighbours
 from robot_agent.planning.search import CrosswindSearch
 
@@ -31,8 +33,10 @@ class Agent:
         self._search = CrosswindSearch(scenario)
         self._group = Group(self._decision.recall)
         self._neighbours = Neighbours(scenario)
+        self._declaration = Declaration(scenario)
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
+        self._ticks_per_map = self._ticks_per_decision * max(1, round(PERIOD / scenario.timing.decision))
         self._own: Own | None = None
         self._at_once = parts.at_once
         self._begun = False
@@ -90,6 +94,8 @@ class Agent:
             self._controller.virtual(),
             self._decision.notes(own) if self._begun else (),
             group.best_at,
+            self._declaration.votes(own.tick, own.t),
+            self._declaration.made,
         )
 
     def act(self, heard: Iterable[Shared]) -> Drive:
@@ -102,11 +108,13 @@ class Agent:
         neighbours.hear(own.tick, heard)
         for state in heard:
             group.merge(state)
+        self._declaration.hear(own.t, heard)
         others = neighbours.others(own.tick)
         if group.started or self._begun:
             self._begin(own)
             if self.decision_due or self._plan is None:
                 self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
+                self._declaration.judge(own.t, self._decision.h, self._decision.certainty())
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
             else:
@@ -117,7 +125,7 @@ class Agent:
             self._plan = self._search.plan(own, group)
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
-        return Drive(self.robot, own.tick, tau_left, tau_right)
+        return Drive(self.robot, own.tick, tau_left, tau_right, self._declaration.made)
 
     def belief(self, links: tuple[int, ...], dropped: int, refused: int) -> Belief:
         """What the robot thinks after `act`, for the recorder."""
@@ -145,6 +153,13 @@ class Agent:
             dropped=dropped,
             refused=refused,
         )
+
+    def belief_map(self) -> BeliefMap | None:
+        """Its map of the source, for the recorder, when one is due and there is one; it may take a while."""
+        own = self._own
+        if own is None or not self._begun or own.tick % self._ticks_per_map:
+            return None
+        return map_message(self.robot, own, self._decision)
 
     def _begin(self, own: Own) -> None:
         if not self._begun:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from protocol.errors import ScenarioError
-from protocol.scenario import RobotScenario
+from protocol.scenario import RobotScenario, Scenario
 from robot_agent.control.ccs import CcsControl
 from robot_agent.control.cfpso import CfpsoControl
 from robot_agent.control.cfpso_ft import CfpsoFtControl
@@ -51,6 +51,7 @@ class Algorithm:
     controller: Callable[[RobotScenario], Controller]
     at_once: bool = False  # begins at the start, not at the first detection: no common search goes before it
     gains: str = ""  # table of the scenario whose beta and gamma ought to fit the graph by (5.2); "": none
+    declares: bool = False  # its decision says how certain it is, so that the swarm can declare the source
     drill: bool = False  # an exercise with given references: it ignores the odour
 
 
@@ -102,3 +103,17 @@ def algorithm(name: str) -> Algorithm:
         return ALGORITHMS[name]
     except KeyError:
         raise ScenarioError(f"algorithm is {name!r}; it must be one of {', '.join(ALGORITHMS)}.") from None
+
+
+def refuse_declaring(scenario: Scenario) -> None:
+    """Refuse `declaration.stop` = "declared" for an algorithm that cannot say how certain it is.
+
+    Raises: ScenarioError.
+    """
+    if scenario.declaration.stop != "declared" or algorithm(scenario.algorithm).declares:
+        return
+    able = ", ".join(name for name, parts in ALGORITHMS.items() if parts.declares) or "none so far"
+    raise ScenarioError(
+        f'declaration.stop is "declared", and algorithm "{scenario.algorithm}" cannot say how certain it is; '
+        f'it must be one that can ({able}), or declaration.stop "reached".'
+    )

@@ -15,7 +15,7 @@ import msgspec
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost
 from protocol.errors import ScenarioError, SwarmFailure
-from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Report, Shared
+from protocol.messages import Answer, Ask, Belief, BeliefMap, Drive, Halt, Join, Reading, Report, Shared
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
@@ -87,7 +87,9 @@ class RobotProcess:
         wires = wire(bus, view)
         agent = Agent(view)
         belief = keys.robot(view.robot, keys.BELIEF)
-        watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
+        picture = keys.robot(view.robot, keys.MAP)
+        tell, show = (bus.publisher(key, reliable=False) for key in (belief, picture))
+        watched = _Watched(bus, agent, belief, picture, tell, show, wires.drive)
         return RobotSession(agent, wires.tell, watched.drive), wires.report
 
     def _link_up(self, bus: Bus, view: RobotScenario) -> None:
@@ -154,7 +156,9 @@ class _Watched:
     bus: Bus
     agent: Agent
     key: str
+    map_key: str
     tell: Callable[[Belief], None]
+    show: Callable[[BeliefMap], None]
     send: Callable[[Drive], None]
 
     def drive(self, drive: Drive) -> None:
@@ -163,3 +167,7 @@ class _Watched:
         if self.agent.decision_due and self.bus.matched(self.key, ()):
             links = tuple(sorted(j for name in self.bus.links() if (j := keys.robot_of(name)) is not None))
             self.tell(self.agent.belief(links, self.bus.counters.dropped, self.bus.counters.refused))
+        if self.agent.decision_due and self.bus.matched(self.map_key, ()):
+            picture = self.agent.belief_map()
+            if picture is not None:
+                self.show(picture)

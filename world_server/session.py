@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from protocol.messages import Drive, Event, Halt, Reading, Report
+from world_server.declarations import Declarations
 from world_server.world import World
 
-FOUND, TIME_OUT, INTERRUPTED = "found", "time out", "interrupted"
+FOUND, DECLARED, TIME_OUT, INTERRUPTED = "found", "declared", "time out", "interrupted"
 
 
 class WorldSession:
@@ -35,6 +36,9 @@ class WorldSession:
         self._tell = tell
         self._drives: dict[int, Drive] = {}
         self._started = False
+        self._by_word = world.scenario.declaration.stop == "declared"  # the swarm itself says when it is over
+        self._reached = False
+        self.declarations = Declarations()
 
     @property
     def over(self) -> bool:
@@ -73,9 +77,13 @@ class WorldSession:
         readings = world.step(world.t, world.next_t, drives)
         if first is None and world.first_detection is not None:
             self.tell("the odour is met for the first time", world.first_detector)
-        if world.found is not None:
-            self.tell("the source is found", world.found.robot)
+        if world.found is not None and not self._reached:
+            self._reached = True
+            self.tell("the source is reached" if self._by_word else "the source is found", world.found.robot)
+        if self._reached and not self._by_word:
             self.end(FOUND)
+        elif self._declared(drives):
+            self.end(DECLARED)
         elif world.t >= world.scenario.max_time - 1e-9:
             self.end(TIME_OUT)
         else:
@@ -106,6 +114,17 @@ class WorldSession:
     def tell(self, text: str, robot: int = -1) -> None:
         """Note something that a person wants to know."""
         self._tell(Event(self.world.tick, self.world.t, robot, text))
+
+    def _declared(self, drives: Mapping[int, Drive]) -> bool:
+        """Whether every live robot told one and the same place."""
+        world, declarations = self.world, self.declarations
+        for robot, (_, by, x, y) in declarations.take(drives.values()):
+            if robot == by:
+                self.tell(f"declares the source at ({x:.2f}, {y:.2f})", robot)
+        agreed = self._by_word and declarations.agreed(world.live, world.t)
+        if agreed:
+            self.tell("all robots declare the same place")
+        return agreed
 
     def _publish(self, readings: list[Reading]) -> None:
         for reading in readings:

@@ -11,7 +11,7 @@ from protocol.errors import OdourswarmError, ScenarioError
 from protocol.scenario import Scenario
 from protocol.scenario.load import Override, load_scenario, parse_setting
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
-from robot_agent.algorithms import ALGORITHMS
+from robot_agent.algorithms import ALGORITHMS, refuse_declaring
 
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
@@ -35,10 +35,13 @@ def read_scenario(
     if source is not None:
         x, y = _point(source)
         overrides += [("source.x", x, "--source"), ("source.y", y, "--source")]
-    if (wind := flags.pop("wind", None)) is not None:
-        overrides.append(("wind.speed", wind, "--wind"))
+    for flag, path in (("wind", "wind.speed"), ("stop", "declaration.stop")):
+        if (value := flags.pop(flag, None)) is not None:
+            overrides.append((path, value, f"--{flag}"))
     overrides += [(name, value, "--" + name.replace("_", "-")) for name, value in flags.items() if value is not None]
-    return load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+    scenario = load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+    refuse_declaring(scenario)
+    return scenario
 
 
 def complain(error: Exception | str) -> None:

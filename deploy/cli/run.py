@@ -30,6 +30,9 @@ def run(
     seed: Annotated[int | None, Option("--seed", help="All randomness follows from it.")] = None,
     max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
     preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
+    stop: Annotated[
+        str | None, Option("--stop", help="reached: a robot is at the source; declared: the swarm says where it is.")
+    ] = None,
     setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
     clock: Annotated[str, Option("--clock", help="lockstep: as fast as the machine goes.")] = "lockstep",
     bus: Annotated[str, Option("--bus", help="zenoh: a process each; memory: one process.")] = "zenoh",
@@ -44,7 +47,7 @@ def run(
         _writable(record)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
-            topology=topology, wind=wind, seed=seed, max_time=max_time,
+            topology=topology, wind=wind, seed=seed, max_time=max_time, stop=stop,
         )  # fmt: skip
     except ScenarioError as error:
         complain(error)

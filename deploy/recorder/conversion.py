@@ -19,7 +19,7 @@ from deploy.recorder.layers.scenery import scenery
 from deploy.recorder.layers.thoughts import ThoughtLayer
 from deploy.recorder.links import LinkWatch
 from deploy.recorder.track import Gaps, track_of
-from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
+from protocol.messages import Belief, BeliefMap, Event, Field, Halt, Outcome, Truth
 from protocol.scenario import Scenario
 
 
@@ -30,6 +30,7 @@ class Batch:
     truths: list[Truth] = field(default_factory=list)
     fields: list[Field] = field(default_factory=list)
     beliefs: list[Belief] = field(default_factory=list)
+    maps: list[BeliefMap] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     halts: list[Halt] = field(default_factory=list)
     outcomes: list[Outcome] = field(default_factory=list)

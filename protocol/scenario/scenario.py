@@ -43,6 +43,7 @@ class Scenario(Table, frozen=True):
     fusion: s.Fusion = s.Fusion()
     planning: s.Planning = s.Planning()
     control: s.Control = s.Control()
+    declaration: s.Declaration = s.Declaration()
     simple: laws.Simple = laws.Simple()
     repulsion: laws.Repulsion = laws.Repulsion()
     pso: laws.Pso = laws.Pso()
@@ -84,6 +85,7 @@ class RobotScenario(Table, frozen=True):
     fusion: s.Fusion
     planning: s.Planning
     control: s.Control
+    declaration: s.Declaration
     simple: laws.Simple
     repulsion: laws.Repulsion
     pso: laws.Pso
