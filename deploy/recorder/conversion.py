@@ -15,6 +15,7 @@ from deploy.recorder.layers import events
 from deploy.recorder.layers.bodies import BodyLayer
 from deploy.recorder.layers.fields import FieldLayer
 from deploy.recorder.layers.graph import GraphLayer
+from deploy.recorder.layers.maps import MapLayer
 from deploy.recorder.layers.scenery import scenery
 from deploy.recorder.layers.thoughts import ThoughtLayer
 from deploy.recorder.links import LinkWatch
@@ -44,10 +45,11 @@ class Conversion:
         self._run = run
         period = scenario.timing.decision
         self._watch = LinkWatch(scenario.graph, scenario.robots, period)
-        self._board = Board(scenario.robots, period)
+        self._board: Board[Belief] = Board(scenario.robots, period)
         self._bodies = BodyLayer(scenario)
         self._fields = FieldLayer(scenario)
         self._thoughts = ThoughtLayer(scenario)
+        self._maps = MapLayer(scenario)
         self._graph = GraphLayer(scenario, self._watch)
         self._gaps = Gaps()
         self._live = frozenset(range(scenario.robots))
@@ -75,6 +77,7 @@ class Conversion:
         yield from self._graph.rows(track)
         yield from self._bodies.rows(track)
         yield from self._thoughts.rows(self._board.rows(self._live, all_of_them=last), track)
+        yield from self._maps.rows(batch.maps, self._live, last=last)
         happened = batch.events + [
             Event(h.tick, self._time_of(h.tick), -1, f"halt: {h.reason}") for h in batch.halts
         ]
