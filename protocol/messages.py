@@ -14,6 +14,7 @@ from msgspec import Meta, Struct
 # The bounds are checked by the decoder; they also keep out what is not finite. Nothing we say in SI units comes near.
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
 MAX_RECORDS = 4096  # entries of one tuple
+MAX_EVENTS = 1 << 16  # bytes
 RECORDS = Meta(max_length=MAX_RECORDS)
 VoteRecord = tuple[int, Number, Number, Number, Number]  # robot, its time (s), x, y, radius of its posterior (m)
 DeclaredRecord = tuple[Number, int, Number, Number]  # when (s), by whom, x, y: the source is there
@@ -70,6 +71,7 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # a controller's own numbers, e.g. a virtual position
     notes: Annotated[tuple[Number, ...], RECORDS] = ()  # a decision's own numbers, e.g. what it remembers to have smelt
     best_at: Number = NEVER  # when the highest concentration was met, s
+    events: Annotated[bytes, Meta(max_length=MAX_EVENTS)] = b""  # a decision's own bytes, e.g. flooded detection events
     votes: Annotated[tuple[VoteRecord, ...], RECORDS] = ()  # what each robot holds the source's place for, passed on
     declared: DeclaredRecord | None = None  # the source is found, as the swarm says
 

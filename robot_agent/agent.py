@@ -94,6 +94,7 @@ class Agent:
             self._controller.virtual(),
             self._decision.notes(own) if self._begun else (),
             group.best_at,
+            self._decision.events(own),
             self._declaration.votes(own.tick, own.t),
             self._declaration.made,
         )
@@ -109,13 +110,16 @@ class Agent:
         for state in heard:
             group.merge(state)
         self._declaration.hear(own.t, heard)
+        self._decision.listen(own, heard)
         others = neighbours.others(own.tick)
         if group.started or self._begun:
             self._begin(own)
             if self.decision_due or self._plan is None:
-                self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
+                around = Around(neighbours.fresh, others, neighbours.numbers)
+                self._decision.decide(own, group, self._detected, around)
                 self._declaration.judge(own.t, self._decision.h, self._decision.certainty())
                 lost = group.lost(own.t, self._s.decision.lost_after)
+                self._planner.brief(own, self._decision, group, around)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
             else:
                 self._plan = self._planner.follow(own, self._plan)

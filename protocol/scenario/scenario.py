@@ -62,6 +62,7 @@ class Scenario(Table, frozen=True):
     surge: laws.Surge = laws.Surge()
     walk: laws.Walk = laws.Walk()
     drill: laws.Drill = laws.Drill()
+    plume_map: laws.PlumeMap = laws.PlumeMap()
     network: s.Network = s.Network()
     recording: s.Recording = s.Recording()
 
@@ -104,6 +105,7 @@ class RobotScenario(Table, frozen=True):
     surge: laws.Surge
     walk: laws.Walk
     drill: laws.Drill
+    plume_map: laws.PlumeMap
     network: s.Network
 
 

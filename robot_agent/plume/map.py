@@ -20,7 +20,6 @@ from robot_agent.plume.likelihood import ONE, REACH, STEPS, WIDTH, Likelihood
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
-BEHIND = 1.5  # m: how far downwind of the sensor a source may still be smelt
 
 
 class EventMap:
@@ -66,7 +65,8 @@ class EventMap:
         length = hypot(dx, dy)
         if length == 0.0:
             return 0.0, x, y
-        return 0.0, x + BEHIND * dx / length, y + BEHIND * dy / length
+        r = self._p.reach  # how wide the plume is smelt where it begins
+        return 0.0, x + r * dx / length, y + r * dy / length
 
     def _along(
         self,

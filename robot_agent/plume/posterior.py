@@ -1,9 +1,9 @@
 """Mean and spread of where the source may be, below the size of a cell where the map is sharp.
 
-Rules: a function of the map alone. A wide posterior is summed over every second cell of every second row. Where the spread is
-a few cells, each cell that matters is divided into 4 x 4 parts, with the logarithm between the middles of cells by the
-parabola through three of them: the map is smooth on that scale, for the way of the air has a width, and the mean is no longer
-bound to the middles of cells.
+Rules: a function of the map alone. A wide posterior is summed over every second cell of every second row. Where the
+spread is a few cells, each cell that matters is divided into 4 x 4 parts, with the logarithm between the middles of cells
+by the parabola through three of them: the map is smooth on that scale, for the way of the air has a width, and the mean
+is no longer bound to the middles of cells.
 """
 
 from __future__ import annotations
