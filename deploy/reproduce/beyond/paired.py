@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deploy.sweep.rows import Row
-from deploy.sweep.summary import CONFIDENCE, RESAMPLES, Interval
+from deploy.sweep.summary import CONFIDENCE, RESAMPLES, Interval, time_of
 
 PLUME = ("wind.gain", "case", "seed")  # what makes a plume, in one study
 
@@ -35,7 +35,7 @@ def compare(rows: Sequence[Row], ours: str, rival: str) -> Pair | None:
     """The pair of two algorithms over the plumes that both met; None when there is none."""
     from scipy.stats import binomtest
 
-    mine, its = ({_plume(row): _time(row) for row in rows if row["algorithm"] == name} for name in (ours, rival))
+    mine, its = ({_plume(row): time_of(row) for row in rows if row["algorithm"] == name} for name in (ours, rival))
     # In the order of the plumes: the bootstrap draws by place.
     saved = [its[plume] - mine[plume] for plume in sorted(mine.keys() & its.keys())]
     if not saved:
@@ -56,10 +56,6 @@ def compare(rows: Sequence[Row], ours: str, rival: str) -> Pair | None:
 
 def _plume(row: Row) -> tuple[float, ...]:
     return tuple(float(row[name]) for name in PLUME)
-
-
-def _time(row: Row) -> float:
-    return float(row["time"] if row["found"] else row["max_time"])
 
 
 def _wilcoxon(saved: Sequence[float]) -> float:
