@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import hypot, sqrt
 
-from protocol.messages import Reading, Shared
+from protocol.messages import NEVER, Reading, Shared
 from protocol.scenario import RobotScenario
 from robot_agent.group import Group
 from robot_agent.hand import Own
@@ -36,6 +36,7 @@ class PlumeMapDecision(Decision):
         self._latest: dict[int, tuple[int, Event]] = {}  # robot -> its newest event
         self._place: tuple[int, float, float] | None = None  # tick, own position with the reading's noise taken out
         self._posterior: Posterior | None = None
+        self.smelt_at = NEVER  # the newest hit that was drawn, s; times of clocks far from one's own never get there
         self.wind: Point = (1.0, 0.0)  # unit vector, where the group's wind of late blows to
         self.state: Point = (0.0, 0.0)
         self.h: Point = (0.0, 0.0)
@@ -94,19 +95,24 @@ class PlumeMapDecision(Decision):
     def _learn(self, key: Key, record: bytes) -> None:
         event = unpack(record, self._s.arena)
         self.chart.learn(key[0], event)
+        if event.hit:
+            self.smelt_at = max(self.smelt_at, key[0] * self._step)
         latest = self._latest.get(event.robot)
         if latest is None or latest[0] < key[0]:
             self._latest[event.robot] = (key[0], event)
 
+    def company(self) -> frozenset[int]:
+        """The robots whose events of late have come, oneself included: those that see the same map."""
+        newest, window = self.chart.newest, self._p.window
+        return frozenset(robot for robot, (k, _) in self._latest.items() if newest - k < window)
+
     def _mean_wind(self) -> None:
         """Direction of the mean of the newest events' ways."""
         x = y = 0.0
-        newest = self.chart.newest
-        for robot in sorted(self._latest):
-            k, event = self._latest[robot]
-            if newest - k < self._p.window:
-                _, bx, by = event.way[self._upwind]
-                x, y = x + event.x - bx, y + event.y - by
+        for robot in sorted(self.company()):
+            _, event = self._latest[robot]
+            _, bx, by = event.way[self._upwind]
+            x, y = x + event.x - bx, y + event.y - by
         size = hypot(x, y)
         if size > 0.0:
             self.wind = (x / size, y / size)

@@ -44,13 +44,15 @@ class BracketPlanner(Planner):
     def brief(self, own: Own, decision: Decision, group: Group, around: Around) -> None:
         assert isinstance(decision, PlumeMapDecision), "this planner belongs to plume-map"
         places = [(own.x, own.y, self._me)]
-        places += [(x, y, j) for (x, y, _, _), j in zip(around.others, around.numbers, strict=True)]
+        # Robots that see another map (their clocks are wrong, say) go their own ways: no line with them.
+        ours = decision.company()
+        places += [(x, y, j) for (x, y, _, _), j in zip(around.others, around.numbers, strict=True) if j in ours]
         middle = (sum(p[0] for p in places) / len(places), sum(p[1] for p in places) / len(places))
         wind = decision.wind
         p = decision.posterior()
         along = deviation_along(p, *wind) if p else 0.0
         across = deviation_along(p, -wind[1], wind[0]) if p else 0.0
-        quiet = own.t - group.detected_at
+        quiet = own.t - decision.smelt_at
         goal = self._goal(own.t, decision.h, middle, wind, along, across, quiet)
         dx, dy = goal[0] - middle[0], goal[1] - middle[1]
         distance = hypot(dx, dy)

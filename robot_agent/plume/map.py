@@ -19,6 +19,7 @@ from robot_agent.plume.likelihood import ONE, REACH, STEPS, WIDTH, Likelihood
 
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
+SOFT = 0.7  # m: half of the length on which an event's weight rises from 0 to 1 where its way begins
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
 
 
@@ -52,7 +53,7 @@ class EventMap:
             if m >= NEAR and not far:
                 return
             one = start if m == 0 else way[m]
-            self._along(one, two, event, weight * thick, int(whole), by_x)
+            self._along(one, two, event, weight * thick, int(whole), by_x, m == 0)
 
     def scale(self) -> float:
         """What a whole number of M is worth now, nats. (The newest event known says what now is.)"""
@@ -65,7 +66,7 @@ class EventMap:
         length = hypot(dx, dy)
         if length == 0.0:
             return 0.0, x, y
-        r = self._p.reach  # how wide the plume is smelt where it begins
+        r = self._p.reach + SOFT  # the plume is smelt as far upwind of a source as beside it
         return 0.0, x + r * dx / length, y + r * dy / length
 
     def _along(
@@ -76,6 +77,7 @@ class EventMap:
         weight: float,
         shift: int,
         by_x: bool,
+        begins: bool,
     ) -> None:
         """Visit the cells beside a stretch of the way, line by line across its main axis."""
         M, cell, tables = self.M, self.cell, self._tables
@@ -103,7 +105,8 @@ class EventMap:
             start, stop = max(0, ceil(middle - half)), min(nb, ceil(middle + half))
             if start >= stop:
                 continue
-            w = round(weight if hit else weight / (1.0 + q / tau)) << shift
+            share = min(1.0, abs(i - p1) * cell / (2.0 * SOFT * cosine)) if begins else 1.0
+            w = round(share * (weight if hit else weight / (1.0 + q / tau))) << shift
             dz = cell * cosine / sigma * STEPS
             z = (start - middle) * dz + WIDTH
             begin = i * stride_a + start * stride_b

@@ -26,9 +26,11 @@ Moments = tuple[float, float, float, float, float]  # mean x, y, covariance xx, 
 def posterior(chart: EventMap) -> Posterior:
     """Moments of exp(L), normalised."""
     scale = chart.scale()
-    found, count = _coarse(chart, 2, scale)
+    found, count = _coarse(chart, range(0, chart.nx, 2), range(0, chart.ny, 2), scale)
     if count < MANY:
-        found, _ = _coarse(chart, 1, scale)
+        x, y, xx, _, yy = found
+        near = _about(x, 5.0 * sqrt(xx) + 4.0, chart.nx), _about(y, 5.0 * sqrt(yy) + 4.0, chart.ny)
+        found, _ = _coarse(chart, *near, scale)
         if found[2] + found[4] < SHARP**2:
             found = _fine(chart, found, scale)
     x, y, xx, xy, yy = found
@@ -41,17 +43,21 @@ def spread(p: Posterior) -> float:
     return sqrt(max(0.0, p.xx + p.yy))
 
 
-def _coarse(chart: EventMap, step: int, scale: float) -> tuple[Moments, int]:
-    """Over every `step`-th cell of every `step`-th row; how many cells counted."""
-    M, nx, ny = chart.M, chart.nx, chart.ny
-    rows = [M[i * ny : (i + 1) * ny : step] for i in range(0, nx, step)]
+def _about(middle: float, reach: float, n: int) -> range:
+    """Cells of 0 ... n - 1 within `reach` of `middle`."""
+    return range(max(0, int(middle - reach)), min(n, int(middle + reach) + 2))
+
+
+def _coarse(chart: EventMap, xs: range, ys: range, scale: float) -> tuple[Moments, int]:
+    """Over the cells (i, j) with i in `xs` and j in `ys`; how many of them counted."""
+    M, ny = chart.M, chart.ny
+    rows = [M[i * ny + ys.start : i * ny + ys.stop : ys.step] for i in xs]
     tops = list(map(max, rows))
     top = max(tops)
     floor = top - int(CUT / scale)
-    ys = range(0, ny, step)
     sums: list[tuple[int, float, float, float]] = []
     count = 0
-    for i, row, highest in zip(range(0, nx, step), rows, tops, strict=True):
+    for i, row, highest in zip(xs, rows, tops, strict=True):
         if highest > floor:
             weights = [exp((m - top) * scale) if m > floor else 0.0 for m in row]
             count += len(weights) - weights.count(0.0)
@@ -64,9 +70,7 @@ def _fine(chart: EventMap, rough: Moments, scale: float) -> Moments:
     """In parts of cells, around the rough mean."""
     M, nx, ny = chart.M, chart.nx, chart.ny
     reach = 4.0 * SHARP
-    columns = range(max(0, int(rough[0] - reach)), min(nx, int(rough[0] + reach) + 2))
-    lines = range(max(0, int(rough[1] - reach)), min(ny, int(rough[1] + reach) + 2))
-    cells = [(i, j) for i in columns for j in lines]
+    cells = [(i, j) for i in _about(rough[0], reach, nx) for j in _about(rough[1], reach, ny)]
     top = max(M[i * ny + j] for i, j in cells)
     floor = top - int(CUT / scale)
     sums: list[tuple[float, float, float, float]] = []
