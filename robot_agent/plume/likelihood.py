@@ -39,17 +39,27 @@ class Likelihood:
         self.hits = [self._row(sigma, p, True) for sigma in sigmas]
         self.misses = [self._row(sigma, p, False) for sigma in sigmas]
         self.sigmas = sigmas
+        # Looked up rather than computed: a logarithm for every line of cells would cost more than the cells.
+        self._fine = 16.0 / self._blur2
+        self._rungs = [self._exact((n + 0.5) / self._fine) for n in range(16 * 64)]
 
     def rung(self, variance: float) -> int:
         """Place in the ladder of sqrt(variance)."""
+        n = int(variance * self._fine)
+        return self._rungs[n] if n < len(self._rungs) else self._exact(variance)
+
+    def _exact(self, variance: float) -> int:
         n = int(log(variance / self._blur2) / self._log_ladder + 0.5)
-        return n if n < RUNGS else RUNGS - 1
+        return min(max(n, 0), RUNGS - 1)
 
     @staticmethod
     def _row(sigma: float, p: PlumeMap, hit: bool) -> Row:
-        """Entries for z = -REACH ... REACH; entry n is for (n - WIDTH) / STEPS <= z < (n + 1 - WIDTH) / STEPS."""
+        """Entries for z = -REACH ... REACH; entry n is for (n - WIDTH) / STEPS <= z < (n + 1 - WIDTH) / STEPS.
+
+        One more at the end is for a z that rounding has carried there.
+        """
         row = []
-        for n in range(2 * WIDTH):
+        for n in range(2 * WIDTH + 1):
             z = (n + 0.5 - WIDTH) / STEPS
             mu = 2.0 * p.reach * exp(-0.5 * z * z) / (sqrt(2.0 * pi) * sigma)
             P = p.detect * (1.0 - exp(-mu))

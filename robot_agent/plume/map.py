@@ -93,23 +93,33 @@ class EventMap:
         cosine = max(FLAT, abs(run) / hypot(run, rise))
         p1, p2 = (a1 - a0) / cell - 0.5, (a2 - a0) / cell - 0.5
         first, last = (ceil(p1), ceil(p2)) if p1 < p2 else (ceil(p2), ceil(p1))
-        blur2, D, tau, hit = self._p.blur**2, event.D, tables.tau, event.hit
+        first, last = max(0, first), min(na, last)
+        hit, tau, rung, sigmas = event.hit, tables.tau, tables.rung, tables.sigmas
         rows = tables.hits if hit else tables.misses
-        for i in range(max(0, first), min(na, last)):
-            part = (a0 + (i + 0.5) * cell - a1) / run
-            q = q1 + part * (q2 - q1)
-            rung = tables.rung(blur2 + D * q)
-            row, sigma = rows[rung], tables.sigmas[rung]
-            middle = (b1 + part * rise - b0) / cell - 0.5
-            half = REACH * sigma / (cosine * cell)
-            start, stop = max(0, ceil(middle - half)), min(nb, ceil(middle + half))
-            if start >= stop:
-                continue
-            share = min(1.0, abs(i - p1) * cell / (2.0 * SOFT * cosine)) if begins else 1.0
-            w = round(share * (weight if hit else weight / (1.0 + q / tau))) << shift
-            dz = cell * cosine / sigma * STEPS
-            z = (start - middle) * dz + WIDTH
-            begin = i * stride_a + start * stride_b
-            for at in range(begin, begin + (stop - start) * stride_b, stride_b):
-                M[at] += w * row[int(z)]
-                z += dz
+        narrow = cosine * cell  # of a sigma across the lines, in their direction
+        # All that changes evenly from line to line, from line `first` on.
+        part, by_part = (first - p1) / (p2 - p1), 1.0 / (p2 - p1)
+        variance, by_variance = self._p.blur**2 + event.D * (q1 + part * (q2 - q1)), event.D * by_part * (q2 - q1)
+        middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
+        for i in range(first, last):
+            n = rung(variance)
+            sigma = sigmas[n]
+            half = REACH * sigma / narrow
+            start, stop = ceil(middle - half), ceil(middle + half)
+            if start < 0:
+                start = 0
+            if stop > nb:
+                stop = nb
+            if start < stop:
+                w = weight if hit else weight / (1.0 + (q1 + (part + (i - first) * by_part) * (q2 - q1)) / tau)
+                if begins:
+                    w *= min(1.0, abs(i - p1) * cell / (2.0 * SOFT * cosine))
+                w = round(w) << shift
+                row, dz = rows[n], narrow / sigma * STEPS
+                z = (start - middle) * dz + WIDTH
+                begin = i * stride_a + start * stride_b
+                for at in range(begin, begin + (stop - start) * stride_b, stride_b):
+                    M[at] += w * row[int(z)]
+                    z += dz
+            variance += by_variance
+            middle += by_middle
