@@ -66,7 +66,7 @@ class EventMap:
         length = hypot(dx, dy)
         if length == 0.0:
             return 0.0, x, y
-        r = self._p.reach + SOFT  # the plume is smelt as far upwind of a source as beside it
+        r = self._p.upwind + SOFT
         return 0.0, x + r * dx / length, y + r * dy / length
 
     def _along(

@@ -108,7 +108,7 @@ def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of
         step = 0.8 if ahead < -6.0 else -0.8 if ahead > 6.0 else step
         for robot, side in enumerate((-3.85, -1.85, 0.15, 2.15, 4.15)):
             x, y = sx + ahead * turn[0] - side * turn[1], sy + ahead * turn[1] + side * turn[0]
-            told.append((k, record(robot, abs(side) < 0.9 and ahead > -0.9, x, y, wind=turn, D=0.05)))
+            told.append((k, record(robot, abs(side) < 0.9 and ahead > -0.65, x, y, wind=turn, D=0.05)))
     p = posterior(chart_of(told))
     assert hypot(p.x - sx, p.y - sy) < 0.4
     assert spread(p) < 0.7
