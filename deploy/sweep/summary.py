@@ -1,7 +1,8 @@
 """What came out of a sweep, one row per cell.
 
-A run that did not find the source counts with its max_time, as in the thesis (section 4.4): in the median, the mean, the
-standard deviation and the bootstrap. Rules: the same rows give the same numbers, in whatever order they come.
+The time is the one at which the source was reached. A run that did not find it counts with its max_time, as in the thesis
+(section 4.4): in the median, the mean, the standard deviation and the bootstrap. Rules: the same rows give the same numbers,
+in whatever order they come.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median, stdev
 
+from deploy.sweep.declared import Declared, declared_of
 from deploy.sweep.rows import Row
 
 CONFIDENCE = 0.95
@@ -31,11 +33,20 @@ class CellSummary:
     std: float | None  # s, of the sample; None: fewer than two runs
     min_pair_distance: float | None  # m, the smallest of all runs
     first_detection: float | None  # s, the median over the runs that met the odour
+    declared: Declared | None = None  # what the swarm said; None: nothing
 
     @property
     def share(self) -> float:
         """Of the runs, those that found the source."""
         return self.found / self.runs
+
+
+def time_of(row: Row) -> float:
+    """When the source was reached, s; max_time when it was not."""
+    if not row["found"]:
+        return float(row["max_time"])
+    reached = row.get("reached_at")  # a run that ends at the swarm's word goes on after it
+    return float(row["time"] if reached is None else reached)
 
 
 def summarise(rows: Sequence[Row], grid: Sequence[str]) -> list[CellSummary]:
@@ -65,7 +76,7 @@ def varying(rows: Sequence[Row], grid: Sequence[str]) -> list[str]:
 
 def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
     # Sorted: the bootstrap draws by place.
-    times = sorted(row["time"] if row["found"] else row["max_time"] for row in rows)
+    times = sorted(map(time_of, rows))
     nearest = [row["min_pair_distance"] for row in rows if row["min_pair_distance"] is not None]
     firsts = [row["first_detection"] for row in rows if row["first_detection"] is not None]
     found = sum(row["found"] for row in rows)
@@ -80,6 +91,7 @@ def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
         std=stdev(times) if len(times) > 1 else None,
         min_pair_distance=min(nearest, default=None),
         first_detection=median(firsts) if firsts else None,
+        declared=declared_of(rows),
     )
 
 
