@@ -235,3 +235,21 @@ def test_in_a_run_that_ends_at_the_source_nobody_votes() -> None:
     who.hear(0.0, [said(1, declared=(0.0, 1, *HERE))])
     judged(who, range(30))
     assert (who.made, who.votes(0, 30.0)) == (None, ())
+
+
+def test_a_robot_that_stood_still_must_be_sure_anew_for_nobody_has_told_it_his_vote_lately() -> None:
+    who = group(2)[0]
+    who.hear(0.0, [vote(1, 0.0, radius=UNSURE)])
+    judged(who, range(int(P.hold) + 2))
+    back = 2 * (P.hold + P.window)
+    judged(who, [back])
+    assert who.made is None
+    judged(who, [back + second for second in range(1, int(P.hold) + 1)])
+    assert who.made[0] == back + P.hold
+
+
+def test_votes_that_were_due_at_a_tick_that_was_missed_are_told_at_the_next() -> None:
+    who = group(2)[0]
+    judged(who, [0])
+    told = [bool(who.votes(tick, tick * TICK)) for tick in (0, 1, PERIOD + 2, PERIOD + 3, 2 * PERIOD)]
+    assert told == [True, False, True, False, True]

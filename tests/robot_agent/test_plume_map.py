@@ -5,9 +5,12 @@ from math import hypot
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from judging_helpers import reading, view
 
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
+from robot_agent.decision.plume_map import PlumeMapDecision
+from robot_agent.hand import Own
 from robot_agent.plume.backtrace import WindPast
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
 from robot_agent.plume.flood import Flood
@@ -215,3 +218,26 @@ def test_foreign_bytes_never_raise_and_leave_no_robot_that_is_not_there(message)
         assert key[1] < 4
         assert len(bits) == SIZE
     flood.tell(True)
+
+
+def test_in_real_time_a_decision_whose_tick_was_missed_tells_its_event_and_what_it_has():
+    """At the first tick after it: a bitmap that waited for the very tick would not be told for as long as that is missed."""
+    scenario = view(algorithm="plume-map", topology="line")
+    decision = PlumeMapDecision(scenario)
+    first = Own(reading(0), scenario.body)
+    decision.record(first)
+    assert decision.events(first)
+    late = Own(reading(22), scenario.body, 18)
+    decision.record(late)
+    told = decision.events(late)
+    assert told[4] > 0  # a bitmap follows
+    assert not decision.events(Own(reading(23), scenario.body, 22))
+
+
+def test_an_own_position_after_a_hang_is_the_reading_and_not_what_the_wheels_would_have_made_of_it():
+    scenario = view(algorithm="plume-map", topology="line")
+    decision = PlumeMapDecision(scenario)
+    decision.record(Own(reading(0, x=50.0), scenario.body))
+    back = Own(reading(200, x=52.0), scenario.body, 0)
+    decision.record(back)
+    assert decision._place == (200, back.x, back.y)
