@@ -229,6 +229,7 @@ class Outcome(Message, frozen=True, array_like=True, gc=False):
     missed: tuple[int, ...] = ()  # real time: control periods without an answer, per robot
     behind: Number = 0.0  # real time: furthest that the world was behind the wall clock, s
     slip: Number = 0.0  # real time: by how much it gave up to catch up, s
+    disagreement: Number | None = None  # m: largest distance of two robots' estimates at the end; None: fewer than two
     declared: bool = False  # every live robot told one and the same place of the source
     declared_at: Number | None = None  # when all of them did, s
     declared_by: int = -1  # who said it first; -1: nobody

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import hypot
+from itertools import combinations
+from math import dist, hypot
 
 from protocol.bus import Counters
 from protocol.messages import Outcome
@@ -28,6 +29,7 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
         hypot(r.h_x - x, r.h_y - y) if (r := reports.get(i)) and r.has_estimate else None
         for i in range(scenario.robots)
     )
+    estimates = [(r.h_x, r.h_y) for r in reports.values() if r.has_estimate]
     messages = {
         "sent": counters.sent + sum(r.sent for r in reports.values()),
         "received": counters.received + sum(r.received for r in reports.values()),
@@ -63,6 +65,7 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
         missed=tuple(session.missed) if isinstance(session, RealtimeWorldSession) else (),
         behind=session.behind if isinstance(session, RealtimeWorldSession) else 0.0,
         slip=session.slip if isinstance(session, RealtimeWorldSession) else 0.0,
+        disagreement=max((dist(one, other) for one, other in combinations(estimates, 2)), default=None),
         declared=common is not None,
         declared_at=at,
         declared_by=common[1] if common else -1,

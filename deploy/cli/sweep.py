@@ -28,6 +28,9 @@ def sweep(
     ] = None,
     summary: Annotated[bool, Option("--summary", help="Only say what came out; SPEC may be a result, too.")] = False,
     fresh: Annotated[bool, Option("--fresh", help="Forget the runs that are finished, and run all again.")] = False,
+    plot: Annotated[
+        Path | None, Option("--plot", metavar="FILE.png", help="Draw what came out, against what the study varies.")
+    ] = None,
     form: Annotated[str, Option("--format", help="Of the summary: table, csv, markdown.")] = "table",
     json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else there.")] = False,
 ) -> None:
@@ -35,13 +38,13 @@ def sweep(
     from deploy.cli.sweep_print import print_studies
 
     try:
-        _check(spec, form, summary=summary)
+        _check(spec, form, plot, summary=summary)
         if spec is None:
             print_studies(json=json)
         elif summary:
-            _summary(spec, out, form, json=json)
+            _summary(spec, out, form, plot, json=json)
         else:
-            _sweep(spec, out, jobs, form, fresh=fresh, json=json)
+            _sweep(spec, out, jobs, form, plot, fresh=fresh, json=json)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -53,12 +56,17 @@ def sweep(
         raise typer.Exit(EXIT_FAILED) from None
 
 
-def _sweep(spec: str, out: Path | None, jobs: int | None, form: str, *, fresh: bool, json: bool) -> None:
+def _sweep(
+    spec: str, out: Path | None, jobs: int | None, form: str, plot: Path | None, *, fresh: bool, json: bool
+) -> None:
     from deploy.cli.sweep_print import print_report, print_summary
     from deploy.cli.sweep_progress import SweepDisplay
     from deploy.sweep.execute import default_jobs, execute
+    from deploy.sweep.plot import draw, no_axis
 
     plan, file = _plan(spec, out)
+    if plot is not None and not any(job.plot for job in plan.jobs):
+        raise ScenarioError(no_axis(plan.spec.file))
     signal.signal(signal.SIGTERM, _terminate)
     try:
         with SweepDisplay(plan.spec.name) as display:
@@ -70,18 +78,21 @@ def _sweep(spec: str, out: Path | None, jobs: int | None, form: str, *, fresh: b
         print_report(report, plan)
     elif report.rows:
         print_summary(report.rows, plan.varied, form)
+    if plot is not None and report.rows:
+        draw(report.rows, plan.varied, plan.spec.title, plot)
     complain(f"{file} has {len(report.rows)} of {report.runs} runs.")
     if report.failed:
         complain(f"{len(report.failed)} runs failed; the same command tries them again.")
         raise typer.Exit(EXIT_FAILED)
 
 
-def _summary(spec: str, out: Path | None, form: str, *, json: bool) -> None:
+def _summary(spec: str, out: Path | None, form: str, plot: Path | None, *, json: bool) -> None:
     from deploy.cli.sweep_print import print_cells, print_summary
+    from deploy.sweep.plot import draw, no_axis
     from deploy.sweep.rows import relabel
     from deploy.sweep.store import finished, grid_of
 
-    missing = None
+    missing, title = None, ""
     if spec.endswith(".parquet"):
         file = Path(spec)
         rows = list(finished(file).values())
@@ -90,9 +101,13 @@ def _summary(spec: str, out: Path | None, form: str, *, json: bool) -> None:
         plan, file = _plan(spec, out)
         found = finished(file, aside=True)
         rows = [relabel(job, found[job.digest]) for job in plan.jobs if job.digest in found]
-        varied, missing = plan.varied, len(plan.jobs) - len(rows)
+        varied, missing, title = plan.varied, len(plan.jobs) - len(rows), plan.spec.title
     if not rows:
         raise ScenarioError(f"{file}: there are no finished runs; `odourswarm sweep SPEC.toml` makes them.")
+    if plot is not None:
+        if not any(row.get("plot") for row in rows):
+            raise ScenarioError(no_axis(spec))
+        draw(rows, varied, title, plot)
     if json:
         print_cells(str(file), rows, varied, missing)
         return
@@ -109,8 +124,12 @@ def _plan(spec: str, out: Path | None) -> tuple[Plan, Path]:
     return plan, out or Path("results") / f"{plan.spec.name}.parquet"
 
 
-def _check(spec: str | None, form: str, *, summary: bool) -> None:
+def _check(spec: str | None, form: str, plot: Path | None, *, summary: bool) -> None:
     from deploy.sweep.tables import FORMATS
+
+    if plot is not None and (spec is None or plot.suffix not in (".png", ".svg", ".pdf") or not plot.parent.is_dir()):
+        sentence = "it needs a study or a sweep's file, and a file that ends in .png, .svg or .pdf in a folder that exists"
+        raise ScenarioError(f"--plot is {plot}; {sentence}.")
 
     if form not in FORMATS:
         raise ScenarioError(f'--format is "{form}"; it must be table, csv or markdown.')

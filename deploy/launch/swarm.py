@@ -128,6 +128,7 @@ class SwarmRun:
 
     def _watch(self, bus: Bus, children: Children, watcher: Watcher, again: Callable[[str], None]) -> Outcome:
         begun = False
+        silent_since: float | None = None  # when the world's liveliness was lost, without its process having ended
         injector = Injector(children)
         tick, t = 0, 0.0
         supervisor = Supervisor(
@@ -154,8 +155,25 @@ class SwarmRun:
                     self.truth(message)
             if begun and (event is None or not isinstance(event, Delivery) or isinstance(event.message, Event | Inject)):
                 supervisor.look(time.monotonic())
+            if isinstance(event, Lost) and event.name == keys.WORLD:
+                silent_since = time.monotonic()
+            elif event is not None and not isinstance(event, Lost):
+                silent_since = None
+            if silent_since is not None and time.monotonic() - silent_since > self.scenario.network.return_timeout:
+                silent_since = None
+                self._end_hung_world(children, restarted=begun and supervisor.keeps_world)
             if (event is None or isinstance(event, Lost)) and not (begun and supervisor.keeps_world):
                 self._look_after(children, begun)
+
+    def _end_hung_world(self, children: Children, *, restarted: bool) -> None:
+        """The world's process is there and says nothing: end it, so that the supervisor starts it again, or the run."""
+        world = children.members[keys.WORLD]
+        if world.status is not None:
+            return
+        world.process.kill()
+        if not restarted:
+            seconds = self.scenario.network.return_timeout
+            raise SwarmFailure(f"the world hangs: nothing was heard of it for {seconds:g} s.")
 
     def _look_after(self, children: Children, begun: bool) -> None:
         """Notice what cannot be mended: the world is gone, or somebody is before the run began."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from deploy.sweep.axes import places
 from deploy.sweep.spec import Cell, Spec
 from protocol.errors import ScenarioError
 from protocol.scenario import Scenario, scenario_digest
@@ -34,6 +35,7 @@ class Job:
     values: dict[str, Value]  # the columns that say which cell it is, by dotted name
     scenario: Scenario
     digest: str  # the run's name: of all that decides it
+    plot: str | None = None  # where its cell stands in a picture, see `axes`; None: nowhere
 
     @property
     def words(self) -> str:
@@ -81,6 +83,7 @@ def _jobs(
     over = (*cell.settings, *choice)
     folders = {setting.origin: spec.file.parent for setting in (*spec.base, *over)}
     jobs = []
+    plot = None
     for seed in range(spec.first_seed, spec.first_seed + spec.seeds):
         layers = (spec.base, (*over, Setting("seed", seed, f"{spec.file}: seeds")))
         # From the layers for each seed, not by replacing it: a scenario may come to depend on its seed.
@@ -88,7 +91,9 @@ def _jobs(
         _refuse(spec, scenario)
         values = {path: _plain(get_value(scenario, path)) for path in columns}
         label = cell.label if cell.label is not None else scenario.algorithm
-        jobs.append(Job(n, label, values, scenario, scenario_digest(scenario)))
+        if cell.plot and plot is None:  # the first seed's stands for the cell
+            plot = places(cell.plot, scenario)
+        jobs.append(Job(n, label, values, scenario, scenario_digest(scenario), plot))
     return jobs
 
 

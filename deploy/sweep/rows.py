@@ -14,6 +14,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from deploy.sweep.axes import PLOT
 from deploy.sweep.code import our_version
 from deploy.sweep.plan import Job
 from protocol.errors import ScenarioError
@@ -32,6 +33,7 @@ MEASURED: dict[str, pa.DataType] = {
     "min_pair_distance": pa.float64(),  # m; null with one robot
     "distance_travelled": pa.list_(pa.float64()),  # m, per robot
     "estimate_error": pa.list_(pa.float64()),  # m, per robot; null: it has no estimate
+    "disagreement": pa.float64(),  # m, largest distance of two estimates; null: fewer than two, or measured by older code
     "digest": pa.string(),  # of the truth: two runs with the same digest were the same to the bit
     "ticks": pa.int64(),
     "wall_s": pa.float64(),
@@ -54,12 +56,17 @@ _TYPES: dict[type, pa.DataType] = {bool: pa.bool_(), int: pa.int64(), float: pa.
 def make_row(job: Job, outcome: Outcome) -> Row:
     """The row of a run that is over."""
     measured = {name: getattr(outcome, name) for name in MEASURED if name != "version"}
-    return {"label": job.label, **job.values, **measured, "version": our_version()}
+    return {**_named(job), **measured, "version": our_version()}
 
 
 def relabel(job: Job, row: Row) -> Row:
     """A row of the same run, with the columns that the plan has now."""
-    return {"label": job.label, **job.values, **{name: row.get(name) for name in MEASURED}}
+    return {**_named(job), **{name: row.get(name) for name in MEASURED}}
+
+
+def _named(job: Job) -> Row:
+    """What a row has from the plan."""
+    return {"label": job.label, **job.values, **({} if job.plot is None else {PLOT: job.plot})}
 
 
 def make_table(rows: Sequence[Row], notes: Mapping[str, str]) -> pa.Table:

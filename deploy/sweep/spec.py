@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 from protocol.errors import ScenarioError
@@ -17,6 +18,8 @@ from protocol.scenario.toml_file import read_toml
 
 OWN = ("title", "seeds", "grid", "cells")  # what a scenario file does not have
 MOST_SEEDS = 100_000
+LAMBDA_2 = "lambda_2"  # a place on an axis that is worked out from the cell's graph
+PLOT = 'plot = {"states lost, %" = 30}'
 SEEDS = "seeds = {first = 1000, count = 50}"
 
 
@@ -26,6 +29,7 @@ class Cell:
 
     label: str | None
     settings: tuple[Setting, ...]
+    plot: tuple[tuple[str, float | str], ...] = ()  # where it stands in a picture: an axis' name, a number or LAMBDA_2
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +122,20 @@ def _cells(entries: object, file: str) -> Iterator[Cell]:
     for n, entry in enumerate(entries, 1):
         label = _text(entry["label"], f"{file} [[cells]] {n}: label") if "label" in entry else None
         origin = f"{file} [[cells]] {n}"
-        yield Cell(label, _settings({key: value for key, value in entry.items() if key != "label"}, origin))
+        settings = _settings({key: value for key, value in entry.items() if key not in ("label", "plot")}, origin)
+        if "plot" in entry and label is None:
+            raise ScenarioError(f"{origin}: plot is given and label is missing; a cell of a picture has a name of its own.")
+        yield Cell(label, settings, tuple(_places(entry.get("plot", {}), f"{origin}: plot")))
+
+
+def _places(value: object, name: str) -> Iterator[tuple[str, float | str]]:
+    if not isinstance(value, Mapping):
+        raise ScenarioError(f"{name} is {show(value)}; it must be a table, for example {PLOT}.")
+    for axis, place in value.items():
+        number = isinstance(place, int | float) and not isinstance(place, bool) and isfinite(place)
+        if not number and place != LAMBDA_2:
+            raise ScenarioError(f'{name}: {show(axis)} is {show(place)}; it must be a number, or "{LAMBDA_2}".')
+        yield axis, place
 
 
 def _seeds(value: object, file: str) -> tuple[int, int]:

@@ -16,6 +16,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from deploy.sweep import rows as r
+from deploy.sweep.axes import PLOT
 from deploy.sweep.code import our_version
 from deploy.sweep.plan import Plan
 from deploy.sweep.rows import Row
@@ -56,7 +57,7 @@ def grid_of(out: Path, rows: list[Row]) -> tuple[str, ...]:
     with suppress(FileNotFoundError):
         return tuple(filter(None, r.read_notes(r.read_table(out)).get("grid", "").split("\n")))
     # Only parts so far: whatever is not measured.
-    return tuple(dict.fromkeys(name for row in rows for name in row if name != "label" and name not in r.MEASURED))
+    return tuple(dict.fromkeys(name for row in rows for name in row if name not in ("label", PLOT, *r.MEASURED)))
 
 
 class Store:

@@ -33,6 +33,10 @@ class CellSummary:
     std: float | None  # s, of the sample; None: fewer than two runs
     min_pair_distance: float | None  # m, the smallest of all runs
     first_detection: float | None  # s, the median over the runs that met the odour
+    disagreement: float | None  # m, the median over the runs at whose end two robots had an estimate
+    disagreement_interval: Interval  # percentile bootstrap, 95 %
+    estimate_error: float | None  # m, the median over the runs; of a run the mean of the robots that have an estimate
+    estimate_error_interval: Interval  # percentile bootstrap, 95 %
     declared: Declared | None = None  # what the swarm said; None: nothing
 
     @property
@@ -80,6 +84,8 @@ def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
     nearest = [row["min_pair_distance"] for row in rows if row["min_pair_distance"] is not None]
     firsts = [row["first_detection"] for row in rows if row["first_detection"] is not None]
     found = sum(row["found"] for row in rows)
+    apart = sorted(row["disagreement"] for row in rows if row.get("disagreement") is not None)
+    errors = sorted(fmean(own) for row in rows if (own := [e for e in row.get("estimate_error") or () if e is not None]))
     return CellSummary(
         values=values,
         runs=len(rows),
@@ -91,6 +97,10 @@ def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
         std=stdev(times) if len(times) > 1 else None,
         min_pair_distance=min(nearest, default=None),
         first_detection=median(firsts) if firsts else None,
+        disagreement=median(apart) if apart else None,
+        disagreement_interval=_bootstrap(apart),
+        estimate_error=median(errors) if errors else None,
+        estimate_error_interval=_bootstrap(errors),
         declared=declared_of(rows),
     )
 

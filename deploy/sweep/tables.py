@@ -38,6 +38,10 @@ def objects(cells: Sequence[CellSummary]) -> list[dict[str, object]]:
             "std_time": cell.std,
             "min_pair_distance": cell.min_pair_distance,
             "first_detection": cell.first_detection,
+            "disagreement": cell.disagreement,
+            **_ends("disagreement", cell.disagreement_interval),
+            "estimate_error": cell.estimate_error,
+            **_ends("estimate_error", cell.estimate_error_interval),
             **(declared.numbers(cell.declared) if with_declared else {}),
         }
         for cell in cells

@@ -186,3 +186,23 @@ def test_launcher_killed_during_a_restart_leaves_nobody_behind(folder):  # noqa:
         lambda: not any(p.is_running() and p.status() != psutil.STATUS_ZOMBIE for p in family.values()), "all have ended"
     )
     wait_for(lambda: not list(folder.glob("odour-*")), "the run's folder is gone")
+
+
+@pytest.mark.parametrize("checkpoints", [False, True])
+def test_hung_world_ends_the_run_or_is_started_again(checkpoints):
+    values = {"supervision__checkpoint_every": 3.0} if checkpoints else {}
+    scenario = near_the_plume(**FAR, max_time=1e5, network__return_timeout=2.0, **values)
+    with Swarm(scenario) as swarm:
+        swarm.under_way()
+        first = swarm.pid("world")
+        os.kill(first, signal.SIGSTOP)
+        if checkpoints:
+            wait_for(lambda: swarm.pid("world") != first, "the world is started again")
+            wait_for(lambda: any("the world is back" in text for text in swarm.events), "the world is back")
+            swarm.run.children.members["world"].process.terminate()
+        else:
+            wait_for(lambda: swarm.error is not None, "the run is given up")
+    if checkpoints:
+        assert swarm.error is None
+    else:
+        assert "the world hangs" in str(swarm.error)
