@@ -89,6 +89,8 @@ class _Recorded:
             if robot.alive and agent.decision_due:
                 links = tuple(sorted(j for name in robot.bus.links() if (j := robot_of(name)) is not None))
                 self._take(agent.belief(links, robot.session.dropped, robot.bus.counters.refused))
+                if (picture := agent.belief_map()) is not None:
+                    self._take(picture)
         if time.perf_counter() >= self._next:
             self._flush()
             self._next = time.perf_counter() + FLUSH_PERIOD

@@ -12,6 +12,7 @@
 | robot/{i}/linked       | robot i -> world                 | who of its neighbours is linked to it now    |
 | inject                 | world -> launcher                | a planned fault of a process is due          |
 | robot/{i}/belief       | robot i -> recorder              | telemetry, best effort                       |
+| robot/{i}/map          | robot i -> recorder              | its map of the source, best effort           |
 | truth, field, events   | world -> recorder                | telemetry, best effort                       |
 | progress, outcome      | world -> launcher                | how it goes, how it ended                    |
 | halt                   | world -> robots, recorder        | the run is over                              |
@@ -25,7 +26,7 @@ import re
 ROOT = "odour"
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
-READING, SHARED, DRIVE, REPORT, BELIEF = "reading", "shared", "drive", "report", "belief"
+READING, SHARED, DRIVE, REPORT, BELIEF, MAP = "reading", "shared", "drive", "report", "belief", "map"
 RESUME, LINKED, INJECT = "resume", "linked", "inject"
 TRUTH, FIELD, EVENTS, PROGRESS, OUTCOME, HALT = "truth", "field", "events", "progress", "outcome", "halt"
 SCENARIO, JOIN = "scenario", "join"

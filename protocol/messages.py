@@ -14,7 +14,10 @@ from msgspec import Meta, Struct
 # The bounds are checked by the decoder; they also keep out what is not finite. Nothing we say in SI units comes near.
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
 MAX_RECORDS = 4096  # entries of one tuple
+MAX_EVENTS = 1 << 16  # bytes
 RECORDS = Meta(max_length=MAX_RECORDS)
+VoteRecord = tuple[int, Number, Number, Number, Number]  # robot, its time (s), x, y, radius of its posterior (m)
+DeclaredRecord = tuple[Number, int, Number, Number]  # when (s), by whom, x, y: the source is there
 RelayedState = tuple[int, int, Number, Number, Number, Number]  # robot, tick, x, y, vx, vy
 
 NEVER = -1.0  # a time that has not come yet
@@ -69,6 +72,9 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     virtual: Annotated[tuple[Number, ...], RECORDS] = ()  # a controller's own numbers, e.g. a virtual position
     notes: Annotated[tuple[Number, ...], RECORDS] = ()  # a decision's own numbers, e.g. what it remembers to have smelt
     best_at: Number = NEVER  # when the highest concentration was met, s
+    events: Annotated[bytes, Meta(max_length=MAX_EVENTS)] = b""  # a decision's own bytes, e.g. flooded detection events
+    votes: Annotated[tuple[VoteRecord, ...], RECORDS] = ()  # what each robot holds the source's place for, passed on
+    declared: DeclaredRecord | None = None  # the source is found, as the swarm says
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):
@@ -78,6 +84,7 @@ class Drive(Message, frozen=True, array_like=True, gc=False):
     tick: int
     tau_left: Number
     tau_right: Number
+    declared: DeclaredRecord | None = None  # the source is found, as the swarm says
 
 
 class Report(Message, frozen=True, array_like=True, gc=False):
@@ -147,6 +154,19 @@ class Belief(Message, frozen=True, array_like=True, gc=False):
     refused: int
 
 
+class BeliefMap(Message, frozen=True, array_like=True, gc=False):
+    """Robot to recorder, every few seconds: how probable it holds each place for the source's. Best effort."""
+
+    robot: int
+    tick: int
+    t: Number
+    x: Number  # lower corner of the map, m
+    y: Number
+    cell: Number  # side of a cell, m
+    rows: int
+    levels: bytes  # zlib of a byte per cell, row by row towards +y: 255 sqrt(p / p_max), see `robot_agent.interfaces`
+
+
 class Truth(Message, frozen=True, array_like=True, gc=False):
     """World to recorder: the robots as they are. Best effort."""
 
@@ -210,6 +230,15 @@ class Outcome(Message, frozen=True, array_like=True, gc=False):
     behind: Number = 0.0  # real time: furthest that the world was behind the wall clock, s
     slip: Number = 0.0  # real time: by how much it gave up to catch up, s
     disagreement: Number | None = None  # m: largest distance of two robots' estimates at the end; None: fewer than two
+    declared: bool = False  # every live robot told one and the same place of the source
+    declared_at: Number | None = None  # when all of them did, s
+    declared_by: int = -1  # who said it first; -1: nobody
+    declared_x: Number | None = None  # and where, m
+    declared_y: Number | None = None
+    declaration_error: Number | None = None  # how far that is from the source, m
+    reached_at: Number | None = None  # when a robot reached the source (`found`), s
+    declaration_delay: Number | None = None  # from reaching to declaring, s; negative: declared before
+    false_declaration: bool = False  # declared further than 2 m off, or where there is no source
 
 
 class Ask(Message, frozen=True, array_like=True, gc=False):

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from protocol.messages import Belief, Drive, Reading, Shared
+from protocol.messages import Belief, BeliefMap, Drive, Reading, Shared
 from protocol.scenario import RobotScenario
 from robot_agent.algorithms import algorithm
+from robot_agent.declaration import Declaration
 from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
 from robot_agent.interfaces import Around, Plan
+from robot_agent.map_telemetry import PERIOD, map_message
 from robot_agent.neighbours import Neighbours
 from robot_agent.observer import Observer
 from robot_agent.planning.search import CrosswindSearch
@@ -39,9 +41,11 @@ class Agent:
         self._neighbours = Neighbours(scenario)
         self._rejoin = Rejoin(scenario)
         self.validation = Validation(scenario, self._controller)
+        self._declaration = Declaration(scenario)
         self._near2 = scenario.repulsion.d**2  # silent robots farther than that push and pull nobody, m^2
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
+        self._ticks_per_map = self._ticks_per_decision * max(1, round(PERIOD / scenario.timing.decision))
         self._own: Own | None = None
         self._at_once = parts.at_once
         self._begun = False
@@ -109,6 +113,9 @@ class Agent:
             self._controller.virtual(),
             self._decision.notes(own) if self._begun else (),
             group.best_at,
+            self._decision.events(own),
+            self._declaration.votes(own.tick, own.t),
+            self._declaration.made,
         )
         if self.observer is not None:
             self.observer.told(shared)
@@ -123,6 +130,9 @@ class Agent:
         arrived = list(heard)
         heard = self.validation.sift(own, arrived)
         neighbours.hear(own.tick, heard)
+        # Also while it still listens: what is flooded and voted comes back to a robot that lost it by hearing it.
+        self._declaration.hear(own.t, heard)
+        self._decision.listen(own, heard)
         others = neighbours.others(own.tick)
         waits = self._rejoin.listening and not self._rejoin.hear(own, neighbours.fresh)
         if not waits:
@@ -133,8 +143,11 @@ class Agent:
         elif group.started or self._begun or self._at_once:
             self._begin(own)
             if self.decision_due or self._plan is None:
-                self._decision.decide(own, group, self._detected, Around(neighbours.fresh, others, neighbours.numbers))
+                around = Around(neighbours.fresh, others, neighbours.numbers)
+                self._decision.decide(own, group, self._detected, around)
+                self._declaration.judge(own.t, self._decision.h, self._decision.certainty())
                 lost = group.lost(own.t, self._s.decision.lost_after)
+                self._planner.brief(own, self._decision, group, around)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
             else:
                 self._plan = self._planner.follow(own, self._plan)
@@ -146,7 +159,7 @@ class Agent:
         others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
-        drive = Drive(self.robot, own.tick, tau_left, tau_right)
+        drive = Drive(self.robot, own.tick, tau_left, tau_right, self._declaration.made)
         if self.observer is not None:
             self.observer.acted(arrived, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)
         return drive
@@ -183,6 +196,13 @@ class Agent:
             dropped=dropped,
             refused=refused + self.validation.total,
         )
+
+    def belief_map(self) -> BeliefMap | None:
+        """Its map of the source, for the recorder, when one is due and there is one; it may take a while."""
+        own = self._own
+        if own is None or not self._begun or not own.due(self._ticks_per_map):
+            return None
+        return map_message(self.robot, own, self._decision)
 
     def _begin(self, own: Own) -> None:
         if not self._begun:

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from protocol.errors import ScenarioError
-from protocol.scenario import RobotScenario
+from protocol.scenario import RobotScenario, Scenario
+from robot_agent.control.bracket import BracketControl
 from robot_agent.control.ccs import CcsControl
 from robot_agent.control.cfpso import CfpsoControl
 from robot_agent.control.cfpso_ft import CfpsoFtControl
@@ -27,12 +28,14 @@ from robot_agent.decision.cast import CastDecision
 from robot_agent.decision.dda import DistributedDecision
 from robot_agent.decision.lpso import LpsoDecision
 from robot_agent.decision.none import Undecided
+from robot_agent.decision.plume_map import PlumeMapDecision
 from robot_agent.decision.ppso_im import PpsoImDecision
 from robot_agent.decision.pso import cpso, cpso_centre, pso, pso_centre, wind_user
 from robot_agent.decision.surge import SurgeDecision
 from robot_agent.decision.walk import WalkDecision
 from robot_agent.interfaces import Controller, Decision, Planner
 from robot_agent.planning import discrete
+from robot_agent.planning.bracket import BracketPlanner
 from robot_agent.planning.centre import CentrePlanner
 from robot_agent.planning.drill import CentreReference, NoReference, VelocityReference
 from robot_agent.planning.head import surge_planner, walk_planner
@@ -51,6 +54,7 @@ class Algorithm:
     controller: Callable[[RobotScenario], Controller]
     at_once: bool = False  # begins at the start, not at the first detection: no common search goes before it
     gains: str = ""  # table of the scenario whose beta and gamma ought to fit the graph by (5.2); "": none
+    declares: bool = False  # its decision says how certain it is, so that the swarm can declare the source
     drill: bool = False  # an exercise with given references: it ignores the odour
 
 
@@ -67,6 +71,9 @@ ALGORITHMS: dict[str, Algorithm] = {
     "dcs-ft": Algorithm("DDA with (5.5), (5.7) made finite-time", DistributedDecision, TracePlanner, DcsFtControl),
     "cfpso-ft": Algorithm("DDA with (4.12) made finite-time", DistributedDecision, TracePlanner, CfpsoFtControl),
     "ftmcs": Algorithm("DDA with the potential-based laws (6.4), (6.5)", DistributedDecision, TracePlanner, FtmcsControl),
+    "plume-map": Algorithm(
+        "map of flooded events, line across the wind", PlumeMapDecision, BracketPlanner, BracketControl, declares=True
+    ),
     "ppso-im": Algorithm("swarm centre or draw from all best places", PpsoImDecision, CentrePlanner, ConsensusControl),
     "lpso": Algorithm("source map with consensus (2.7)", LpsoDecision, CentrePlanner, ConsensusControl),
     "ccs-like": Algorithm("DDA with (2.7) of the 2 nearest in formation", DistributedDecision, TracePlanner, CcsControl),
@@ -102,3 +109,17 @@ def algorithm(name: str) -> Algorithm:
         return ALGORITHMS[name]
     except KeyError:
         raise ScenarioError(f"algorithm is {name!r}; it must be one of {', '.join(ALGORITHMS)}.") from None
+
+
+def refuse_declaring(scenario: Scenario) -> None:
+    """Refuse `declaration.stop` = "declared" for an algorithm that cannot say how certain it is.
+
+    Raises: ScenarioError.
+    """
+    if scenario.declaration.stop != "declared" or algorithm(scenario.algorithm).declares:
+        return
+    able = ", ".join(name for name, parts in ALGORITHMS.items() if parts.declares) or "none so far"
+    raise ScenarioError(
+        f'declaration.stop is "declared", and algorithm "{scenario.algorithm}" cannot say how certain it is; '
+        f'it must be one that can ({able}), or declaration.stop "reached".'
+    )

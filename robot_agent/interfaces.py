@@ -7,7 +7,7 @@ algorithm is one new file for what is new in it and one line in `robot_agent.alg
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -18,7 +18,22 @@ from robot_agent.kalman import Estimate
 from robot_agent.neighbours import Placed
 
 Point = tuple[float, float]
+# x0, y0 (corner of the first cell, m), cell (m), rows, and one byte per cell, row by row towards +y, within a row towards
+# +x: 255 sqrt(p / p_max), p the probability that the source is in the cell
+BeliefMap = tuple[float, float, float, int, bytes]
 Fresh = Sequence[tuple[float, Shared]]  # (a_ij, state) of the neighbours that count now
+
+
+
+class Posterior(NamedTuple):
+    """Where a decision takes the source to be: mean, m, and covariance, m^2."""
+
+    x: float
+    y: float
+    xx: float
+    xy: float
+    yy: float
+
 
 SEARCH, TRACE, LOST = "search", "trace", "lost"
 
@@ -86,9 +101,33 @@ class Decision(Protocol):
         """Own numbers to tell the neighbours at this tick (`Shared.notes`)."""
         return ()
 
+    def listen(self, own: Own, heard: Iterable[Shared]) -> None:
+        """At every tick from the start on: all that arrived, late states too."""
+        return
+
+    def events(self, own: Own) -> bytes:
+        """Own bytes to tell the neighbours at this tick (`Shared.events`)."""
+        return b""
+
+    def posterior(self) -> Posterior | None:
+        """Mean and covariance of the position of the source; None: they are not known (yet)."""
+        return None
+
+    def certainty(self) -> float | None:
+        """How well the position of the source is known: root of the trace of its covariance, m; None: it is not said."""
+        return None
+
+    def belief_map(self) -> BeliefMap | None:
+        """Where the source may be, for whoever watches; None: there is no such map (yet). May be slow: ask rarely."""
+        return None
+
 
 class Planner(Protocol):
     """Makes a plan from the decision."""
+
+    def brief(self, own: Own, decision: Decision, group: Group, around: Around) -> None:
+        """Just before `plan`: all that the decision knew, for plans that need more than h."""
+        return
 
     def plan(self, own: Own, h: Point, lost: bool) -> Plan:
         """At every decision instant after `begin`."""

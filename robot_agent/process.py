@@ -17,7 +17,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Belief, Drive, Halt, Join, Reading, Resume, Shared
+from protocol.messages import Answer, Ask, Belief, BeliefMap, Drive, Halt, Join, Reading, Resume, Shared
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
@@ -110,7 +110,9 @@ class RobotProcess:
         if histories is not None:
             RobotHistory(agent, self.run, histories.member(keys.robot_name(view.robot)))
         belief = keys.robot(view.robot, keys.BELIEF)
-        watched = _Watched(bus, agent, belief, bus.publisher(belief, reliable=False), wires.drive)
+        picture = keys.robot(view.robot, keys.MAP)
+        tell, show = (bus.publisher(key, reliable=False) for key in (belief, picture))
+        watched = _Watched(bus, agent, belief, picture, tell, show, wires.drive)
         if view.clock == "realtime":
             return realtime_session(agent, view, wires.tell, watched.drive), wires
         return RobotSession(agent, wires.tell, watched.drive), wires
@@ -208,7 +210,9 @@ class _Watched:
     bus: Bus
     agent: Agent
     key: str
+    map_key: str
     tell: Callable[[Belief], None]
+    show: Callable[[BeliefMap], None]
     send: Callable[[Drive], None]
 
     def drive(self, drive: Drive) -> None:
@@ -217,3 +221,7 @@ class _Watched:
         if self.agent.decision_due and self.bus.matched(self.key, ()):
             links = tuple(sorted(j for name in self.bus.links() if (j := keys.robot_of(name)) is not None))
             self.tell(self.agent.belief(links, self.bus.counters.dropped, self.bus.counters.refused))
+        if self.agent.decision_due and self.bus.matched(self.map_key, ()):
+            picture = self.agent.belief_map()
+            if picture is not None:
+                self.show(picture)

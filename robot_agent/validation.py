@@ -19,7 +19,8 @@ where nothing is; claim a best concentration somewhere in the arena, up to the b
 of all, a share c_2 of h^ic (3.31); lead the search from leg to leg; hold a false fusion state in the arena (against
 that: fusion.kind = "resilient"); and say from the start, or by drifting as slowly as a body drives, that it is where it
 is not: the consensus laws of chapters 5 and 6 know no other place of a neighbour and follow it (docs/lab.md has the
-effects). A robot's `notes` are the algorithm's own and are not checked.
+effects). A robot's `notes` and `events` are the algorithm's own and are not checked. Neither are the votes and the
+declaration that it passes on: they are mostly others' words, and one false declaration is adopted by all who hear it.
 """
 
 from __future__ import annotations

@@ -8,8 +8,9 @@ from math import dist, hypot
 from protocol.bus import Counters
 from protocol.messages import Outcome
 from protocol.scenario import scenario_digest
+from world_server.declarations import WRONG
 from world_server.realtime_session import RealtimeWorldSession
-from world_server.session import ALL_STOPPED, FOUND, INTERRUPTED, TIME_OUT, WorldSession
+from world_server.session import ALL_STOPPED, DECLARED, FOUND, INTERRUPTED, TIME_OUT, WorldSession
 
 
 def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) -> Outcome:
@@ -37,9 +38,13 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
     }
     found = world.found
     ended = session.ended or INTERRUPTED
+    declared = session.declarations
+    common, at = declared.common, declared.at
+    source = (x, y) if scenario.plume.release_rate > 0.0 else None
+    off = declared.error(source)
     return Outcome(
         found=found is not None,
-        time=found.t if found else world.t,
+        time=found.t if found and ended == FOUND else world.t,
         finder=found.robot if found else -1,
         ticks=world.tick,
         wall_s=wall_s,
@@ -54,11 +59,20 @@ def outcome(session: WorldSession, run: str, wall_s: float, counters: Counters) 
         faults=tuple(session.faults),
         messages=messages,
         ended=ended,
-        failed=ended not in (FOUND, TIME_OUT, INTERRUPTED, ALL_STOPPED),
+        failed=ended not in (FOUND, DECLARED, TIME_OUT, INTERRUPTED, ALL_STOPPED),
         first_detection=world.first_detection,
         clock=scenario.clock,
         missed=tuple(session.missed) if isinstance(session, RealtimeWorldSession) else (),
         behind=session.behind if isinstance(session, RealtimeWorldSession) else 0.0,
         slip=session.slip if isinstance(session, RealtimeWorldSession) else 0.0,
         disagreement=max((dist(one, other) for one, other in combinations(estimates, 2)), default=None),
+        declared=common is not None,
+        declared_at=at,
+        declared_by=common[1] if common else -1,
+        declared_x=common[2] if common else None,
+        declared_y=common[3] if common else None,
+        declaration_error=off,
+        reached_at=found.t if found else None,
+        declaration_delay=at - found.t if found and at is not None else None,
+        false_declaration=common is not None and (off is None or off > WRONG),
     )

@@ -81,6 +81,7 @@ class RealtimeWorldSession(WorldSession):
         world = self.world
         if robot in world.live and not (self.ended is not None and robot in self.reports):
             world.lose(robot)
+            self.declarations.forget(robot)
             self._newest.pop(robot, None)
             if self.ended is None:
                 self._note(f"robot {robot} {how} at {world.t:.2f} s", robot)

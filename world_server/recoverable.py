@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 import msgspec
 from msgspec import Struct
 
-from protocol.messages import Drive, Event, Halt, Inject, Reading, Resume
+from protocol.messages import DeclaredRecord, Drive, Event, Halt, Inject, Reading, Resume
 from world_server.faults.plan import CRASH
 from world_server.session import CONTINUE, KILL, STOP, WorldSession
 from world_server.world import World
@@ -22,6 +22,7 @@ class Stepped(Struct, frozen=True, array_like=True, tag="s"):
     """All who were waited for had answered."""
 
     drives: tuple[tuple[int, float, float], ...]  # robot, torques, N m
+    declared: tuple[tuple[int, DeclaredRecord], ...] = ()  # what robots said of the source, as far as it was new
 
 
 class Left(Struct, frozen=True, array_like=True, tag="l"):
@@ -61,6 +62,7 @@ class SessionState(Struct, frozen=True, array_like=True):
     stopped: tuple[int, ...]
     returning: tuple[tuple[int, int], ...]  # (tick, robot) of returns that no fault had planned
     started: bool
+    declared: tuple[tuple[int, DeclaredRecord], ...] = ()  # what each robot said last of the source
 
 
 class RecoverableSession(WorldSession):
@@ -110,8 +112,9 @@ class RecoverableSession(WorldSession):
         """The state when `quiet`; the world's own is not in it."""
         tick = self.world.tick
         returning = tuple((at, robot) for robot, at in self._returning.items() if at > tick)
+        stopped, declared = tuple(sorted(self.stopped)), tuple(self.declarations.of.items())
         return msgspec.msgpack.encode(
-            SessionState(tuple(self.faults), self.dropped, tuple(sorted(self.stopped)), returning, self._started)
+            SessionState(tuple(self.faults), self.dropped, stopped, returning, self._started, declared)
         )
 
     def restore(self, snapshot: bytes, inputs: Iterable[Input]) -> None:
@@ -124,6 +127,8 @@ class RecoverableSession(WorldSession):
         for tick, robot in state.returning:
             self._return_at(tick, robot)
         self._started = state.started
+        self._reached = self.world.found is not None
+        self.declarations.of = dict(state.declared)
         outside = self._journal, self._send, self._halt, self._tell, self._resume, self._inject
         self._journal = lambda _: None
         self._send = {i: lambda _: None for i in self._send}
@@ -170,7 +175,9 @@ class RecoverableSession(WorldSession):
         self._expect(came)
 
     def step(self) -> None:
-        self._journal(Stepped(tuple([(i, d.tau_left, d.tau_right) for i, d in self._drives.items()])))
+        drives, known = self._drives, self.declarations.of
+        new = tuple([(i, d.declared) for i, d in drives.items() if d.declared is not None and d.declared != known.get(i)])
+        self._journal(Stepped(tuple([(i, d.tau_left, d.tau_right) for i, d in drives.items()]), new))
         super().step()
 
     def lose(self, robot: int, how: str = "lost") -> bool:
@@ -203,8 +210,9 @@ class RecoverableSession(WorldSession):
     def _take_again(self, each: Input) -> None:
         tick = self.world.tick
         match each:
-            case Stepped(drives):
-                self._drives = {i: Drive(i, tick, left, right) for i, left, right in drives}
+            case Stepped(drives, declared):
+                said = dict(declared)
+                self._drives = {i: Drive(i, tick, left, right, said.get(i)) for i, left, right in drives}
                 if not self._started:
                     self.start()
                 self.step()

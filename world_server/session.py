@@ -15,11 +15,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from protocol.messages import Drive, Event, Halt, Inject, Linked, Reading, Report, Resume
+from world_server.declarations import Declarations
 from world_server.faults.plan import CRASH, Due, Plan
 from world_server.roster import Roster
 from world_server.world import World
 
-FOUND, TIME_OUT, INTERRUPTED = "found", "time out", "interrupted"
+FOUND, DECLARED, TIME_OUT, INTERRUPTED = "found", "declared", "time out", "interrupted"
 ALL_STOPPED = "all robots have stopped, as planned"
 STOP, CONTINUE, KILL = "stop", "continue", "kill"  # what the launcher is asked to do to a process
 
@@ -58,6 +59,9 @@ class WorldSession:
         self._inject = inject
         self._roster = Roster(world.scenario)
         self.answered: set[int] = set()  # of the awaited ones, those that have answered
+        self._by_word = world.scenario.declaration.stop == "declared"  # the swarm itself says when it is over
+        self._reached = False
+        self.declarations = Declarations()
 
     @property
     def over(self) -> bool:
@@ -107,9 +111,13 @@ class WorldSession:
         world.advance(world.t, world.next_t, drives)
         if first is None and world.first_detection is not None:
             self.tell("the odour is met for the first time", world.first_detector)
-        if world.found is not None:
-            self.tell("the source is found", world.found.robot)
+        if world.found is not None and not self._reached:
+            self._reached = True
+            self.tell("the source is reached" if self._by_word else "the source is found", world.found.robot)
+        if self._reached and not self._by_word:
             self.end(FOUND)
+        elif self._declared(drives):
+            self.end(DECLARED)
         elif world.t >= world.scenario.max_time - 1e-9:
             self.end(TIME_OUT)
         else:
@@ -122,6 +130,7 @@ class WorldSession:
         if robot not in world.live or (self.ended is not None and robot in self.reports):
             return False
         world.lose(robot)
+        self.declarations.forget(robot)
         self._drives.pop(robot, None)
         if self.ended is None:
             text = f"robot {robot} {how} at {world.t:.2f} s"
@@ -140,6 +149,7 @@ class WorldSession:
         self._inject(Inject(robot, self.world.tick, KILL if how == CRASH else STOP))
         self.stopped.add(robot)
         self.world.lose(robot)
+        self.declarations.forget(robot)
 
     def call(self, robot: int) -> None:
         """Ask a suspended robot to take part again from this tick on; once more when a link to it has come back."""
@@ -223,6 +233,17 @@ class WorldSession:
     def tell(self, text: str, robot: int = -1) -> None:
         """Note something that a person wants to know."""
         self._tell(Event(self.world.tick, self.world.t, robot, text))
+
+    def _declared(self, drives: Mapping[int, Drive]) -> bool:
+        """Whether every live robot told one and the same place."""
+        world, declarations = self.world, self.declarations
+        for robot, (_, by, x, y) in declarations.take(drives.values()):
+            if robot == by:
+                self.tell(f"declares the source at ({x:.2f}, {y:.2f})", robot)
+        agreed = self._by_word and declarations.agreed(world.live, world.t)
+        if agreed:
+            self.tell("all robots declare the same place")
+        return agreed
 
     def _publish(self, readings: list[Reading]) -> None:
         for reading in readings:

@@ -3,7 +3,9 @@
 The truth is worked out again from the bodies: hand x = r + L (cos theta, sin theta), straight from tick to tick; the source
 is found at the first tick in which the way of a hand meets the circle of `source.radius` (or, with `source.stop` =
 "concentration", at the first sample of enough odour by a robot that is alive). A run that ended as found ended there, by
-a robot that got there; any other ended without anybody having got there; a time out is not early.
+a robot that got there; any other ended without anybody having got there; a time out is not early. Where the swarm itself
+says when it is over (`declaration.stop` = "declared"), getting there ends nothing: whether somebody did must be in the
+outcome, and the run never ends as found.
 """
 
 from __future__ import annotations
@@ -32,7 +34,8 @@ def one_true_verdict(history: History) -> Facts:
         return
     yield None
     verdict, result = verdicts[0], results[0]
-    agree = result.ended == verdict.reason and result.found == (verdict.reason == FOUND)
+    by_word = history.scenario.declaration.stop == "declared"
+    agree = result.ended == verdict.reason and (by_word or result.found == (verdict.reason == FOUND))
     says = f'"{result.ended}", found {result.found}'
     yield None if agree else f'the verdict is "{verdict.reason}", but the outcome says {says}'
     yield from _against_truth(history, verdict, result)
@@ -44,7 +47,11 @@ def _against_truth(history: History, verdict: Verdict, result: Result) -> Facts:
     last = history.moved[-1].tick if history.moved else -1
     yield None if verdict.tick == last else f"the verdict fell {when}, but the world went on to tick {last}"
     tick, finders = _arrival(history)
+    by_word = history.scenario.declaration.stop == "declared"
     if verdict.reason == FOUND:
+        if by_word:
+            yield f'the run ended {when} as "{FOUND}", but only the word of the swarm, or its time, was to end it'
+            return
         said = f"the source was said to be found {when}"
         if not finders:
             yield f"{said}, but nobody had got there"
@@ -56,7 +63,12 @@ def _against_truth(history: History, verdict: Verdict, result: Result) -> Facts:
         yield None if in_time else f"{said}, and that at {result.time:g} s, after the end of the run"
         return
     ended = f'the run ended {when} as "{verdict.reason}"'
-    yield None if not finders else f"{ended}, but robot {min(finders)} was at the source {history.when(tick)}"
+    if by_word:
+        right = (result.finder in finders) if finders else not result.found
+        who = f"robot {min(finders)} was at the source {history.when(tick)}" if finders else "nobody was at the source"
+        yield None if right else f"{ended}, found {result.found} by robot {result.finder}, but {who}"
+    else:
+        yield None if not finders else f"{ended}, but robot {min(finders)} was at the source {history.when(tick)}"
     early = verdict.reason == TIME_OUT and verdict.tick * history.dt < history.scenario.max_time - ROUNDING
     yield None if not early else f"{ended}, before max_time of {history.scenario.max_time:g} s"
 

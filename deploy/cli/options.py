@@ -12,7 +12,7 @@ from protocol.history.file import refuse_used
 from protocol.scenario import Scenario
 from protocol.scenario.load import Override, load_scenario, parse_setting
 from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED, Stop, leave, stop_on_signals
-from robot_agent.algorithms import ALGORITHMS
+from robot_agent.algorithms import ALGORITHMS, refuse_declaring
 
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
@@ -36,17 +36,15 @@ def read_scenario(
     if source is not None:
         x, y = _point(source)
         overrides += [("source.x", x, "--source"), ("source.y", y, "--source")]
-    if (wind := flags.pop("wind", None)) is not None:
-        overrides.append(("wind.speed", wind, "--wind"))
-    if (fusion := flags.pop("fusion", None)) is not None:
-        overrides.append(("fusion.kind", fusion, "--fusion"))
-    for name in ("restart", "checkpoint_every"):
-        if (value := flags.pop(name, None)) is not None:
-            overrides.append((f"supervision.{name}", value, "--" + name.replace("_", "-")))
-    if (speed := flags.pop("speed", None)) is not None:
-        overrides.append(("realtime.speed", speed, "--speed"))
+    for flag, path in (("wind", "wind.speed"), ("stop", "declaration.stop"), ("fusion", "fusion.kind"),
+                       ("restart", "supervision.restart"), ("checkpoint_every", "supervision.checkpoint_every"),
+                       ("speed", "realtime.speed")):  # fmt: skip
+        if (value := flags.pop(flag, None)) is not None:
+            overrides.append((path, value, "--" + flag.replace("_", "-")))
     overrides += [(name, value, "--" + name.replace("_", "-")) for name, value in flags.items() if value is not None]
-    return load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+    scenario = load_scenario(file, overrides=overrides, algorithms=ALGORITHMS)
+    refuse_declaring(scenario)
+    return scenario
 
 
 def checkpoint_folder(folder: Path | None, scenario: Scenario) -> None:

@@ -25,6 +25,10 @@ def reproduce(
     out: Annotated[Path, Option("--out", help="Folder for the picture and the numbers.")] = Path("reproduction"),
     bus: Annotated[str, Option("--bus", help="Of those that run the swarm. zenoh: a process each; memory.")] = "zenoh",
     seed: Annotated[int, Option("--seed", help="All randomness follows from it.", min=0)] = 0,
+    seeds: Annotated[
+        int | None, Option("--seeds", min=1, help="beyond: make so many plumes of every gain now, not a sweep's result.")
+    ] = None,
+    result: Annotated[Path | None, Option("--result", metavar="FILE", help="beyond: a sweep's result.")] = None,
     json: Annotated[bool, Option("--json", help="One JSON object a line on stdout and nothing else.")] = False,
 ) -> None:
     """Run a worked example of the thesis again: its picture, and its numbers beside the thesis's text."""
@@ -45,7 +49,7 @@ def reproduce(
         raise typer.Exit(EXIT_BAD_INPUT) from None
     try:
         # One that cannot be made (a library is missing) does not keep the others from being made.
-        status = max(_one(each, Options(bus, seed), out, json=json) for each in chosen)
+        status = max(_one(each, Options(bus, seed, seeds, result), out, json=json) for each in chosen)
     except KeyboardInterrupt:
         complain("interrupted; what was finished is written.")
         raise typer.Exit(INTERRUPTED) from None

@@ -31,6 +31,9 @@ def run(
     fusion: Annotated[str | None, Option("--fusion", help="plain (3.26), or resilient: withstands liars.")] = None,
     max_time: Annotated[float | None, Option("--max-time", metavar="T", help="Give up after T simulated s.")] = None,
     preset: Annotated[str | None, Option("--preset", help="corrected, or literal as the thesis prints it.")] = None,
+    stop: Annotated[
+        str | None, Option("--stop", help="reached: a robot is at the source; declared: the swarm says where it is.")
+    ] = None,
     setting: Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Any scenario value.")] = None,
     clock: Annotated[
         str | None, Option("--clock", help="lockstep: as fast as the machine goes; realtime: nobody is waited for.")
@@ -61,7 +64,7 @@ def run(
             prepare_history(history)
         scenario = read_scenario(
             file, setting or [], source=source, preset=preset, case=case, robots=robots, algorithm=algorithm,
-            topology=topology, wind=wind, seed=seed, max_time=max_time, fusion=fusion, clock=clock, speed=speed,
+            topology=topology, wind=wind, seed=seed, max_time=max_time, stop=stop, fusion=fusion, clock=clock, speed=speed,
             restart=restart, checkpoint_every=checkpoint_every,
         )  # fmt: skip
         checkpoint_folder(checkpoint, scenario)

@@ -28,10 +28,10 @@ def print_summary(rows: Sequence[Row], varied: Sequence[str], form: str) -> None
     console = _console()
     table = Table(box=None, padding=(0, 2 if console.width >= ROOMY else 1, 0, 0))
     values = list(cells[0].values) if cells else []
-    for name in (*values, *tables.HEADINGS):
+    for name in (*values, *tables.headings(cells)):
         table.add_column(name, justify="left" if name in values else "right")
-    for cell in cells:
-        table.add_row(*tables.fields(cell))
+    for row in tables.table(cells):
+        table.add_row(*row)
     console.print(table)
 
 

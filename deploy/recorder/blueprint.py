@@ -9,6 +9,7 @@ from rerun.encodings import EntityPathLike
 
 from deploy.recorder import palette
 from deploy.recorder.chunks import SIM_TIME
+from deploy.recorder.layers.maps import EACH
 from protocol.scenario import Scenario
 
 MARGIN = 0.06  # of the arena, on every side
@@ -71,7 +72,10 @@ def _arena(scenario: Scenario) -> rrb.Spatial2DView:
         start=rr.TimeRangeBoundary.infinite(),
         end=rr.TimeRangeBoundary.cursor_relative(seconds=0.0),
     )
-    overrides: dict[EntityPathLike, VisualizerLike] = {"robots/trail": past}
+    overrides: dict[EntityPathLike, VisualizerLike] = {
+        "robots/trail": past,
+        EACH: rrb.EntityBehavior(visible=False),  # the maps of single robots are there to be switched on
+    }
     if scenario.robots > LEGEND:
         # Fifty circles hide everything else; they are there to be switched on.
         overrides["robots/uncertainty"] = rrb.EntityBehavior(visible=False)

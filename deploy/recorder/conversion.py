@@ -15,11 +15,12 @@ from deploy.recorder.layers import events
 from deploy.recorder.layers.bodies import BodyLayer
 from deploy.recorder.layers.fields import FieldLayer
 from deploy.recorder.layers.graph import GraphLayer
+from deploy.recorder.layers.maps import MapLayer
 from deploy.recorder.layers.scenery import scenery
 from deploy.recorder.layers.thoughts import ThoughtLayer
 from deploy.recorder.links import LinkWatch
 from deploy.recorder.track import Gaps, track_of
-from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
+from protocol.messages import Belief, BeliefMap, Event, Field, Halt, Outcome, Truth
 from protocol.scenario import Scenario
 
 
@@ -30,6 +31,7 @@ class Batch:
     truths: list[Truth] = field(default_factory=list)
     fields: list[Field] = field(default_factory=list)
     beliefs: list[Belief] = field(default_factory=list)
+    maps: list[BeliefMap] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     halts: list[Halt] = field(default_factory=list)
     outcomes: list[Outcome] = field(default_factory=list)
@@ -45,10 +47,11 @@ class Conversion:
         self._watch = LinkWatch(
             scenario.graph, scenario.robots, period, scenario.schedule, scenario.graph_options.period
         )
-        self._board = Board(scenario.robots, period)
+        self._board: Board[Belief] = Board(scenario.robots, period)
         self._bodies = BodyLayer(scenario)
         self._fields = FieldLayer(scenario)
         self._thoughts = ThoughtLayer(scenario)
+        self._maps = MapLayer(scenario)
         self._graph = GraphLayer(scenario, self._watch)
         self._gaps = Gaps()
         self._live = frozenset(range(scenario.robots))
@@ -76,6 +79,7 @@ class Conversion:
         yield from self._graph.rows(track)
         yield from self._bodies.rows(track)
         yield from self._thoughts.rows(self._board.rows(self._live, all_of_them=last), track)
+        yield from self._maps.rows(batch.maps, self._live, last=last)
         happened = batch.events + [
             Event(h.tick, self._time_of(h.tick), -1, f"halt: {h.reason}") for h in batch.halts
         ]

@@ -9,37 +9,44 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
-from protocol.messages import Belief
+from protocol.messages import Belief, BeliefMap
 
 PATIENCE = 10  # decisions
 VALID = 3  # decisions
 _SLACK = 1e-6  # s
 
 
+Told = TypeVar("Told", Belief, BeliefMap)
+
+
 @dataclass(frozen=True, slots=True)
-class Decision:
+class Row(Generic[Told]):
     """What the robots think at one decision."""
 
     tick: int
     t: float
-    beliefs: dict[int, Belief]  # by robot, in the order of the robots; at most VALID decisions old
+    beliefs: dict[int, Told]  # by robot, in the order of the robots; at most VALID decisions old
+
+
+Decision = Row[Belief]
 
 
 @dataclass(slots=True)
-class Board:
+class Board(Generic[Told]):
     """Collects the beliefs of robots 0..n-1 that decide every `period` simulated seconds."""
 
     n: int
     period: float
     late: int = 0  # beliefs that came after their row had gone
-    _pending: dict[int, dict[int, Belief]] = field(default_factory=dict)
-    _newest: dict[int, Belief] = field(default_factory=dict)  # of each robot, arrived
-    _shown: dict[int, Belief] = field(default_factory=dict)  # of each robot, in rows that have gone
+    _pending: dict[int, dict[int, Told]] = field(default_factory=dict)
+    _newest: dict[int, Told] = field(default_factory=dict)  # of each robot, arrived
+    _shown: dict[int, Told] = field(default_factory=dict)  # of each robot, in rows that have gone
     _gone: int = -1  # tick of the last row that has gone
     _begun: float | None = None
 
-    def add(self, beliefs: Iterable[Belief]) -> None:
+    def add(self, beliefs: Iterable[Told]) -> None:
         """Take beliefs that arrived."""
         for belief in beliefs:
             i = belief.robot
@@ -54,7 +61,7 @@ class Board:
             else:
                 self._pending.setdefault(belief.tick, {})[i] = belief
 
-    def rows(self, live: Iterable[int], *, all_of_them: bool = False) -> list[Decision]:
+    def rows(self, live: Iterable[int], *, all_of_them: bool = False) -> list[Row[Told]]:
         """Rows that are complete, or have waited long enough.
 
         Args:
@@ -62,7 +69,7 @@ class Board:
             all_of_them: do not wait for anybody.
         """
         live = tuple(live)
-        rows: list[Decision] = []
+        rows: list[Row[Told]] = []
         latest = max((belief.t for belief in self._newest.values()), default=0.0)
         for tick in sorted(self._pending):
             if not all_of_them and any(self._awaited(i, tick, latest) for i in live):
@@ -77,9 +84,9 @@ class Board:
         spoke = self._begun if newest is None else newest.t
         return spoke is not None and latest - spoke <= PATIENCE * self.period + _SLACK
 
-    def _row(self, tick: int, spoken: dict[int, Belief]) -> Decision:
+    def _row(self, tick: int, spoken: dict[int, Told]) -> Row[Told]:
         self._gone = tick
         self._shown.update(spoken)
         t = next(iter(spoken.values())).t
         valid = {i: b for i, b in self._shown.items() if t - b.t <= VALID * self.period + _SLACK}
-        return Decision(tick, t, dict(sorted(valid.items())))
+        return Row(tick, t, dict(sorted(valid.items())))

@@ -17,7 +17,7 @@ from deploy.recorder.recording import Recording
 from protocol import keys
 from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
-from protocol.messages import Belief, Event, Field, Halt, Outcome, Truth
+from protocol.messages import Belief, BeliefMap, Event, Field, Halt, Outcome, Truth
 from protocol.scenario import Scenario, lease_ms
 from protocol.shell import Stop, ignore_signals
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -62,6 +62,7 @@ class RecorderProcess:
             bus.subscribe(keys.HALT, Halt)
             for i in range(self.scenario.robots):
                 bus.subscribe(keys.robot(i, keys.BELIEF), Belief)
+                bus.subscribe(keys.robot(i, keys.MAP), BeliefMap)
             recording = Recording(self.scenario, path=self.record, view=self.view, run=self.run)
             with contextlib.suppress(OSError, AttributeError):  # Windows has no nice
                 os.nice(NICE)  # this thread, which draws; those that receive have started already

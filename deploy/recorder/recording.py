@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from protocol.errors import OdourswarmError
-from protocol.messages import Belief, Event, Field, Halt, Message, Outcome, Truth
+from protocol.messages import Belief, BeliefMap, Event, Field, Halt, Message, Outcome, Truth
 from protocol.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -109,6 +109,7 @@ class Recording:
         self._keep: dict[type[Message], Callable[..., None]] = {
             Truth: batch.truths.append,
             Belief: batch.beliefs.append,
+            BeliefMap: batch.maps.append,
             Field: batch.fields.append,
             Event: batch.events.append,
             Halt: batch.halts.append,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class Options:
 
     bus: str = "zenoh"  # for reproductions that run the swarm: zenoh, a process each, or memory
     seed: int = 0
+    seeds: int | None = None  # for those that sum up a sweep: make so many runs of each kind now
+    result: Path | None = None  # and the sweep's result, when it is not where a sweep puts it
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from deploy.reproduce import chapter3, chapter4, chapter5, chapter6, finite_time
+from deploy.reproduce import beyond, chapter3, chapter4, chapter5, chapter6, finite_time
 from deploy.reproduce.kinds import Reproduction
 from protocol.errors import ScenarioError
 
@@ -19,6 +19,7 @@ FAMILIES: tuple[Sequence[Reproduction], ...] = (
     finite_time.REPRODUCTIONS,
     chapter6.REPRODUCTIONS,
     chapter5.REPRODUCTIONS,
+    beyond.REPRODUCTIONS,
 )
 
 ALL: dict[str, Reproduction] = {each.name: each for family in FAMILIES for each in family}

@@ -18,7 +18,7 @@ from protocol.scenario import Scenario, scenario_digest
 from protocol.scenario.load import from_layers
 from protocol.scenario.schema import get_value
 from protocol.scenario.settings import Setting
-from robot_agent.algorithms import ALGORITHMS
+from robot_agent.algorithms import ALGORITHMS, refuse_declaring
 
 ALWAYS = ("algorithm", "topology", "robots", "case", "max_time")  # columns of every result, in the grid or not
 MOST_RUNS = 100_000
@@ -88,12 +88,20 @@ def _jobs(
         layers = (spec.base, (*over, Setting("seed", seed, f"{spec.file}: seeds")))
         # From the layers for each seed, not by replacing it: a scenario may come to depend on its seed.
         scenario = from_layers(layers, algorithms=ALGORITHMS, folders=folders)
+        _refuse(spec, scenario)
         values = {path: _plain(get_value(scenario, path)) for path in columns}
         label = cell.label if cell.label is not None else scenario.algorithm
         if cell.plot and plot is None:  # the first seed's stands for the cell
             plot = places(cell.plot, scenario)
         jobs.append(Job(n, label, values, scenario, scenario_digest(scenario), plot))
     return jobs
+
+
+def _refuse(spec: Spec, scenario: Scenario) -> None:
+    try:
+        refuse_declaring(scenario)
+    except ScenarioError as error:
+        raise ScenarioError(f"{spec.file}: {error}") from None
 
 
 def _plain(value: object) -> Value:

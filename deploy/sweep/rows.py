@@ -38,6 +38,15 @@ MEASURED: dict[str, pa.DataType] = {
     "ticks": pa.int64(),
     "wall_s": pa.float64(),
     "ended": pa.string(),
+    "reached_at": pa.float64(),  # s; null: nobody reached the source (or a result from before robots could declare)
+    "declared": pa.bool_(),  # every live robot told one and the same place
+    "declared_at": pa.float64(),  # s
+    "declared_by": pa.int64(),
+    "declared_x": pa.float64(),  # m
+    "declared_y": pa.float64(),
+    "declaration_error": pa.float64(),  # m
+    "declaration_delay": pa.float64(),  # from reaching to declaring, s
+    "false_declaration": pa.bool_(),
     "version": pa.string(),  # of odourswarm
 }
 NEEDED = ("label", "algorithm", "max_time", "scenario_digest", "found", "time")  # without these it is something else

@@ -1,7 +1,8 @@
 """What came out of a sweep, one row per cell.
 
-A run that did not find the source counts with its max_time, as in the thesis (section 4.4): in the median, the mean, the
-standard deviation and the bootstrap. Rules: the same rows give the same numbers, in whatever order they come.
+The time is the one at which the source was reached. A run that did not find it counts with its max_time, as in the thesis
+(section 4.4): in the median, the mean, the standard deviation and the bootstrap. Rules: the same rows give the same numbers,
+in whatever order they come.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median, stdev
 
+from deploy.sweep.declared import Declared, declared_of
 from deploy.sweep.rows import Row
 
 CONFIDENCE = 0.95
@@ -35,11 +37,20 @@ class CellSummary:
     disagreement_interval: Interval  # percentile bootstrap, 95 %
     estimate_error: float | None  # m, the median over the runs; of a run the mean of the robots that have an estimate
     estimate_error_interval: Interval  # percentile bootstrap, 95 %
+    declared: Declared | None = None  # what the swarm said; None: nothing
 
     @property
     def share(self) -> float:
         """Of the runs, those that found the source."""
         return self.found / self.runs
+
+
+def time_of(row: Row) -> float:
+    """When the source was reached, s; max_time when it was not."""
+    if not row["found"]:
+        return float(row["max_time"])
+    reached = row.get("reached_at")  # a run that ends at the swarm's word goes on after it
+    return float(row["time"] if reached is None else reached)
 
 
 def summarise(rows: Sequence[Row], grid: Sequence[str]) -> list[CellSummary]:
@@ -69,7 +80,7 @@ def varying(rows: Sequence[Row], grid: Sequence[str]) -> list[str]:
 
 def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
     # Sorted: the bootstrap draws by place.
-    times = sorted(row["time"] if row["found"] else row["max_time"] for row in rows)
+    times = sorted(map(time_of, rows))
     nearest = [row["min_pair_distance"] for row in rows if row["min_pair_distance"] is not None]
     firsts = [row["first_detection"] for row in rows if row["first_detection"] is not None]
     found = sum(row["found"] for row in rows)
@@ -90,6 +101,7 @@ def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
         disagreement_interval=_bootstrap(apart),
         estimate_error=median(errors) if errors else None,
         estimate_error_interval=_bootstrap(errors),
+        declared=declared_of(rows),
     )
 
 

@@ -9,6 +9,7 @@ import csv
 import io
 from collections.abc import Sequence
 
+from deploy.sweep import declared
 from deploy.sweep.summary import CellSummary, Interval
 
 FORMATS = ("table", "csv", "markdown")
@@ -16,8 +17,14 @@ FORMATS = ("table", "csv", "markdown")
 HEADINGS = ("runs", "found, %", "median, s", "mean, s", "std, s", "nearest, m", "first, s")
 
 
+def headings(cells: Sequence[CellSummary]) -> tuple[str, ...]:
+    """Of the numbers of `fields`: what the swarms declared only where one did."""
+    return (*HEADINGS, *declared.HEADINGS) if _any_declared(cells) else HEADINGS
+
+
 def objects(cells: Sequence[CellSummary]) -> list[dict[str, object]]:
     """Each cell as a flat object; an interval is two numbers, `_low` and `_high`."""
+    with_declared = _any_declared(cells)
     return [
         {
             **cell.values,
@@ -35,6 +42,7 @@ def objects(cells: Sequence[CellSummary]) -> list[dict[str, object]]:
             **_ends("disagreement", cell.disagreement_interval),
             "estimate_error": cell.estimate_error,
             **_ends("estimate_error", cell.estimate_error_interval),
+            **(declared.numbers(cell.declared) if with_declared else {}),
         }
         for cell in cells
     ]
@@ -53,9 +61,10 @@ def as_csv(cells: Sequence[CellSummary]) -> str:
 def as_markdown(cells: Sequence[CellSummary]) -> str:
     """A Markdown table."""
     names = list(cells[0].values) if cells else []
-    heads = [*(f"`{name}`" if name != "label" else name for name in names), *HEADINGS]
-    lines = [heads, [*("---" for _ in names), *("---:" for _ in HEADINGS)]]
-    lines += [[text.replace("|", "\\|") for text in fields(cell)] for cell in cells]
+    numbers = headings(cells)
+    heads = [*(f"`{name}`" if name != "label" else name for name in names), *numbers]
+    lines = [heads, [*("---" for _ in names), *("---:" for _ in numbers)]]
+    lines += [[text.replace("|", "\\|") for text in row] for row in table(cells)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
@@ -71,6 +80,18 @@ def fields(cell: CellSummary) -> list[str]:
         _number(cell.min_pair_distance, 2),
         _number(cell.first_detection, 0),
     ]
+
+
+def table(cells: Sequence[CellSummary]) -> list[list[str]]:
+    """All cells under their values and `headings`."""
+    rows = [fields(cell) for cell in cells]
+    if _any_declared(cells):
+        rows = [[*row, *declared.fields(cell.declared)] for row, cell in zip(rows, cells, strict=True)]
+    return rows
+
+
+def _any_declared(cells: Sequence[CellSummary]) -> bool:
+    return any(cell.declared is not None for cell in cells)
 
 
 def _value(value: object) -> str:

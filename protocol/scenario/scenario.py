@@ -51,6 +51,7 @@ class Scenario(Table, frozen=True):
     planning: s.Planning = s.Planning()
     control: s.Control = s.Control()
     trust: Trust = Trust()
+    declaration: s.Declaration = s.Declaration()
     simple: laws.Simple = laws.Simple()
     repulsion: laws.Repulsion = laws.Repulsion()
     pso: laws.Pso = laws.Pso()
@@ -69,6 +70,7 @@ class Scenario(Table, frozen=True):
     surge: laws.Surge = laws.Surge()
     walk: laws.Walk = laws.Walk()
     drill: laws.Drill = laws.Drill()
+    plume_map: laws.PlumeMap = laws.PlumeMap()
     graph_options: GraphOptions = GraphOptions()
     network: s.Network = s.Network()
     recording: s.Recording = s.Recording()
@@ -100,6 +102,7 @@ class RobotScenario(Table, frozen=True):
     planning: s.Planning
     control: s.Control
     trust: Trust
+    declaration: s.Declaration
     simple: laws.Simple
     repulsion: laws.Repulsion
     pso: laws.Pso
@@ -118,6 +121,7 @@ class RobotScenario(Table, frozen=True):
     surge: laws.Surge
     walk: laws.Walk
     drill: laws.Drill
+    plume_map: laws.PlumeMap
     network: s.Network
     supervision: Supervision
     faults: tuple[OwnFault, ...]  # what it acts out itself: how it lies, how its clock is wrong

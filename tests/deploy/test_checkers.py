@@ -36,6 +36,32 @@ def test_a_true_run_of_any_algorithm_keeps_every_promise(algorithm):
     assert broken(history) == {}
 
 
+@pytest.fixture(scope="module")
+def declared() -> History:
+    """Robots begin at the source, which ends nothing, and the swarm declares it."""
+    places = [[24.0, float(y)] for y in (-4, -2, 0, 2, 4)]
+    by_word = {"algorithm": "plume-map", "declaration__stop": "declared", "start__positions": places, "max_time": 200.0}
+    return kept(near_the_plume(topology="line", **by_word))[0]
+
+
+def test_a_run_that_the_swarm_ended_by_its_word_keeps_every_promise(declared):
+    assert declared.verdicts[0].reason == "declared"
+    assert declared.results[0].found
+    assert broken(declared) == {}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"found": False, "finder": -1}, 'as "declared", found False by robot -1, but robot'),
+        ({"finder": 9}, "found True by robot 9, but robot"),
+    ],
+)
+def test_an_outcome_that_forgets_who_reached_the_source_is_seen(declared, changes, words):
+    other = tampered(declared, lambda history: history.results.append(replace(history.results.pop(), **changes)))
+    assert words in look("verdict", other).counterexample
+
+
 @pytest.mark.parametrize("topology", ["all", "ring", "line", "star", "directed-ring"])
 @pytest.mark.parametrize("robots", [1, 4])
 def test_a_true_run_on_every_graph_keeps_every_promise(topology, robots):

@@ -85,6 +85,27 @@ def test_killed_world_comes_back_from_its_checkpoint_with_the_digest_of_an_undis
     assert swarm.outcome.estimate_error == expected.estimate_error
 
 
+def test_what_the_swarm_declares_is_the_same_when_a_robot_crashes_as_planned_and_the_world_is_killed():
+    places = [[24.0, float(y)] for y in (-4, -2, 0, 2, 4)]
+    crash = {"kind": "crash", "robot": 1, "at": 5.0, "restart": 3.0}
+    scenario = near_the_plume(
+        algorithm="plume-map", topology="ring", declaration__stop="declared", start__positions=places, max_time=300.0,
+        supervision__checkpoint_every=3.0, faults=(crash,),
+    )  # fmt: skip
+    with Swarm(scenario) as swarm:
+        wait_for(lambda: any("robot 1 is back" in text for text in swarm.events), "robot 1 is back")
+        seen = swarm.under_way().ticks
+        wait_for(lambda: swarm.ticks > seen + 100, "some ticks more")
+        first = kill(swarm, "world")
+        wait_for(lambda: swarm.pid("world") != first, "the world is started again")
+        swarm.finish()
+    assert swarm.error is None
+    ended, expected = swarm.outcome, run_in_memory(scenario)
+    assert expected.ended == "declared"
+    assert (ended.ended, ended.digest, ended.declared_at) == (expected.ended, expected.digest, expected.declared_at)
+    assert (ended.declared_by, ended.declared_x) == (expected.declared_by, expected.declared_x)
+
+
 def test_robot_and_world_killed_together_both_come_back():
     scenario = near_the_plume(
         **FAR, robots=4, max_time=1e5, supervision__checkpoint_every=2.0, supervision__restart="always"

@@ -18,7 +18,7 @@ from protocol.errors import ScenarioError
 
 def row_of(job: Job, time: float = 1.0) -> r.Row:
     """A finished run that nobody ran."""
-    measured = {
+    measured = dict.fromkeys(r.MEASURED) | {
         "seed": job.scenario.seed, "scenario_digest": job.digest, "found": True, "time": time, "finder": 0,
         "first_detection": None, "min_pair_distance": 0.5, "distance_travelled": [1.0, 2.0],
         "estimate_error": [None, 3.0], "disagreement": None, "digest": "d", "ticks": 20, "wall_s": 0.1,

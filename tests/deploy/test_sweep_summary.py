@@ -126,3 +126,37 @@ def test_format_that_is_not_known_is_refused(result):
     ended = command("--summary", result, "--format", "html")
     assert (ended.exit_code, ended.stdout) == (2, "")
     assert ended.stderr == '--format is "html"; it must be table, csv or markdown.\n'
+
+
+def word(n, *, declared=True, delay=20.0, error=0.3, false=False, reached=100.0):
+    """A run that goes on until the swarm declares the source."""
+    time = reached + delay if declared else 1000.0
+    if not declared:
+        delay = error = None
+    return row(n, time=time) | {
+        "reached_at": reached, "declared": declared, "declaration_delay": delay, "declaration_error": error,
+        "false_declaration": false,
+    }  # fmt: skip
+
+
+WORDS = [word(0), word(1, delay=61.0, error=0.5), word(2, delay=-5.0, error=3.0, false=True), word(3, declared=False)]
+
+
+def test_what_swarms_declared_is_summed_up_and_the_time_is_that_of_reaching():
+    (cell,) = summarise(WORDS, [])
+    said = cell.declared
+    assert (said.runs, said.declared, said.soon, said.delay, said.error, said.false) == (4, 3, 2, 20.0, 0.5, 1)
+    assert cell.median == cell.mean == 100.0
+    (facts,) = tables.objects([cell])
+    assert (facts["declared"], facts["declared_soon"], facts["false_declarations"]) == (3, 2, 1)
+    assert tables.as_markdown([cell]).splitlines()[2].endswith("| 75 | 50 | 20 | 0.50 | 25.0 |")
+
+
+def test_nothing_is_said_of_declarations_where_none_was_made():
+    (cell,) = summarise(TEN, ["algorithm"])
+    assert cell.declared is None
+    assert "declared" not in tables.objects([cell])[0]
+    assert "declared" not in tables.as_markdown([cell])
+    mixed = summarise([*TEN, *(each | {"algorithm": "plume-map"} for each in WORDS)], ["algorithm"])
+    assert [each["declared"] for each in tables.objects(mixed)] == [None, 3]
+    assert "| - | - | - | - | - |" in tables.as_markdown(mixed)

@@ -114,3 +114,23 @@ def test_the_run_ends_in_time():
     story.step(0, 1, 2, ticks=10)
     assert story.session.ended == "time out"
     assert story.halts == ["time out"]
+
+
+def test_in_real_time_late_robots_count_with_their_last_word_and_lost_ones_do_not():
+    story = Story(**{"declaration.stop": "declared"})
+    session, here, there = story.session, (2.0, 0, 1.0, 1.0), (1.0, 1, 30.0, 4.0)
+
+    def say(**words: tuple[float, int, float, float]) -> None:
+        for name, record in words.items():
+            session.take_drive(Drive(int(name[1]), story.tick, 0.0, 0.0, record))
+        session.step()
+
+    say(r0=here, r1=there)
+    session.lose(1)
+    assert session.declarations.of == {0: here}
+    session.see(1)
+    say(r2=here)
+    assert session.ended is None  # 1 is there and has said nothing since
+    say(r1=here)
+    assert session.ended == "declared"
+    assert story.halts == ["declared"]

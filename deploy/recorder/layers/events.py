@@ -79,6 +79,10 @@ def describe(run: str, scenario: Scenario, outcome: Outcome | None) -> str:
 
 
 def _verdict(outcome: Outcome) -> str:
+    if outcome.declared:
+        off = "there is none" if outcome.declaration_error is None else f"{outcome.declaration_error:.2f} m off"
+        place = f"({outcome.declared_x:.2f}, {outcome.declared_y:.2f})"
+        return f"The swarm **declared** the source at {place} after {outcome.declared_at:.2f} s: {off}."
     if outcome.found:
         return f"The source was **found** by {robot_label(outcome.finder)} after {outcome.time:.2f} s."
     return f"The source was **not found** in {outcome.time:.2f} s: {outcome.ended}."
@@ -88,6 +92,8 @@ def _outcome(outcome: Outcome) -> list[tuple[str, str]]:
     rows = [("ended", f"{outcome.ended}, {outcome.time:.2f} s")]
     if outcome.first_detection is not None:
         rows.append(("first detection", f"{outcome.first_detection:.2f} s"))
+    if outcome.reached_at is not None:
+        rows.append(("reached", f"{outcome.reached_at:.2f} s, by {robot_label(outcome.finder)}"))
     rows += [
         ("ticks", f"{outcome.ticks} in {outcome.wall_s:.2f} s, {outcome.ticks_per_s:.0f} per second"),
         ("truth digest", f"`{outcome.digest}`"),

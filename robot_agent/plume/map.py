@@ -1,0 +1,125 @@
+"""The map: for every cell of the arena the logarithm of the likelihood that the source is there, as whole numbers.
+
+    L_k(c) = sum_e 2^((k_e - k) / T_2) dl_e(c),   T_2 = T_f log 2 / step,   dl_e: `robot_agent.plume.likelihood`
+
+is kept as L = 2^(-k / T_2) M with M = sum_e 2^(k_e / T_2) dl_e, so that forgetting costs nothing: later events weigh more.
+
+Rules: M is a sum of whole numbers, each of which depends on its event alone. Robots with the same events hold the same M to
+the bit, in whatever order and however late the events came. Python's integers do not overflow.
+"""
+
+from __future__ import annotations
+
+from math import ceil, hypot, log
+
+from protocol.scenario.laws import PlumeMap
+from protocol.scenario.sections import Arena
+from robot_agent.plume.events import Event
+from robot_agent.plume.likelihood import ONE, REACH, STEPS, WIDTH, Likelihood
+
+FRACTION = 10  # bits of an event's weight
+FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
+SOFT = 0.7  # m: half of the length on which an event's weight rises from 0 to 1 where its way begins
+NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
+
+
+class EventMap:
+    """M, and what events do to it."""
+
+    def __init__(self, arena: Arena, p: PlumeMap, step: float) -> None:
+        """`step`: time between two decisions, s."""
+        self._p = p
+        self.x0, self.y0, self.cell = arena.x_min, arena.y_min, p.cell
+        self.nx = max(2, ceil((arena.x_max - arena.x_min) / p.cell - 1e-9))
+        self.ny = max(2, ceil((arena.y_max - arena.y_min) / p.cell - 1e-9))
+        self.M = [0] * (self.nx * self.ny)  # cell (i, j) at i ny + j
+        self._tables = Likelihood(p)
+        self._half_life = p.forget * log(2.0) / step  # decisions
+        self.newest = 0
+
+    def learn(self, k: int, event: Event) -> None:
+        """Take the event of decision `k` in."""
+        self.newest = max(self.newest, k)
+        p = self._p
+        way = event.way
+        far = event.hit or (k + event.robot) % p.thin == 0
+        whole, part = divmod(k / self._half_life, 1.0)
+        weight = 2.0**part * (1 << FRACTION)
+        end = way[-1]
+        by_x = abs(end[1] - way[0][1]) >= abs(end[2] - way[0][2])
+        start = self._behind(way)
+        for m, two in enumerate(way[1:]):
+            thick = 1 if event.hit or m < NEAR else p.thin
+            if m >= NEAR and not far:
+                return
+            one = start if m == 0 else way[m]
+            self._along(one, two, event, weight * thick, int(whole), by_x, m == 0)
+
+    def scale(self) -> float:
+        """What a whole number of M is worth now, nats. (The newest event known says what now is.)"""
+        return float(2.0 ** -(self.newest / self._half_life)) / (ONE << FRACTION)
+
+    def _behind(self, way: tuple[tuple[float, float, float], ...]) -> tuple[float, float, float]:
+        """The way begins a little downwind of the sensor."""
+        _, x, y = way[0]
+        dx, dy = x - way[1][1], y - way[1][2]
+        length = hypot(dx, dy)
+        if length == 0.0:
+            return 0.0, x, y
+        r = self._p.upwind + SOFT
+        return 0.0, x + r * dx / length, y + r * dy / length
+
+    def _along(
+        self,
+        one: tuple[float, float, float],
+        two: tuple[float, float, float],
+        event: Event,
+        weight: float,
+        shift: int,
+        by_x: bool,
+        begins: bool,
+    ) -> None:
+        """Visit the cells beside a stretch of the way, line by line across its main axis."""
+        M, cell, tables = self.M, self.cell, self._tables
+        if by_x:
+            (q1, a1, b1), (q2, a2, b2) = one, two
+            a0, b0, na, nb, stride_a, stride_b = self.x0, self.y0, self.nx, self.ny, self.ny, 1
+        else:
+            (q1, b1, a1), (q2, b2, a2) = one, two
+            a0, b0, na, nb, stride_a, stride_b = self.y0, self.x0, self.ny, self.nx, 1, self.ny
+        run, rise = a2 - a1, b2 - b1
+        if run == 0.0:
+            return
+        cosine = max(FLAT, abs(run) / hypot(run, rise))
+        p1, p2 = (a1 - a0) / cell - 0.5, (a2 - a0) / cell - 0.5
+        first, last = (ceil(p1), ceil(p2)) if p1 < p2 else (ceil(p2), ceil(p1))
+        first, last = max(0, first), min(na, last)
+        hit, tau, rung, sigmas = event.hit, tables.tau, tables.rung, tables.sigmas
+        rows = tables.hits if hit else tables.misses
+        narrow = cosine * cell  # of a sigma across the lines, in their direction
+        # All that changes evenly from line to line, from line `first` on.
+        part, by_part = (first - p1) / (p2 - p1), 1.0 / (p2 - p1)
+        variance, by_variance = self._p.blur**2 + event.D * (q1 + part * (q2 - q1)), event.D * by_part * (q2 - q1)
+        middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
+        for i in range(first, last):
+            n = rung(variance)
+            sigma = sigmas[n]
+            half = REACH * sigma / narrow
+            start, stop = ceil(middle - half), ceil(middle + half)
+            if start < 0:
+                start = 0
+            if stop > nb:
+                stop = nb
+            if start < stop:
+                w = weight if hit else weight / (1.0 + (q1 + (part + (i - first) * by_part) * (q2 - q1)) / tau)
+                if begins:
+                    w *= min(1.0, abs(i - p1) * cell / (2.0 * SOFT * cosine))
+                w = round(w) << shift
+                row, dz = rows[n], narrow / sigma * STEPS
+                z = (start - middle) * dz + WIDTH
+                begin = i * stride_a + start * stride_b
+                for at in range(begin, begin + (stop - start) * stride_b, stride_b):
+                    M[at] += w * row[int(z)]
+                    z += dz
+            variance += by_variance
+            middle += by_middle

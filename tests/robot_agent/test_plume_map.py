@@ -1,0 +1,243 @@
+"""plume-map: events and their flood, a map that is equal to the bit, the posterior below a cell."""
+
+from math import hypot
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from judging_helpers import reading, view
+
+from protocol.scenario.laws import PlumeMap
+from protocol.scenario.sections import Arena
+from robot_agent.decision.plume_map import PlumeMapDecision
+from robot_agent.hand import Own
+from robot_agent.plume.backtrace import WindPast
+from robot_agent.plume.events import LAGS, SIZE, pack, unpack
+from robot_agent.plume.flood import Flood
+from robot_agent.plume.map import EventMap
+from robot_agent.plume.posterior import posterior, spread
+
+ARENA = Arena()
+TABLE = PlumeMap()
+
+
+def record(robot=0, hit=False, x=50.0, y=0.0, wind=(1.0, 0.0), D=0.1):
+    return pack(robot, hit, x, y, D, [(lag * wind[0], lag * wind[1]) for lag in LAGS], ARENA)
+
+
+def chart_of(events):
+    chart = EventMap(ARENA, TABLE, 1.0)
+    for k, bits in events:
+        chart.learn(k, unpack(bits, ARENA))
+    return chart
+
+
+speeds = st.floats(-4.0, 4.0)
+events = st.tuples(
+    st.integers(0, 400),
+    st.builds(
+        record,
+        robot=st.integers(0, 9),
+        hit=st.booleans(),
+        x=st.floats(0.0, 100.0),
+        y=st.floats(-50.0, 50.0),
+        wind=st.tuples(speeds, speeds),
+        D=st.floats(0.02, 5.0),
+    ),
+)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(events, min_size=1, max_size=8), st.randoms(use_true_random=False))
+def test_the_same_events_give_the_same_map_to_the_bit_in_any_order(told, random):
+    in_order = chart_of(sorted(told))
+    shuffled = list(told)
+    random.shuffle(shuffled)
+    chart = chart_of(shuffled)
+    assert chart.M == in_order.M
+    assert posterior(chart) == posterior(in_order)
+
+
+def test_an_event_that_comes_late_counts_as_if_it_had_come_in_time():
+    early, late = (10, record(hit=True, y=3.0)), [(k, record(x=60.0 - k, y=1.0)) for k in range(11, 40)]
+    assert chart_of([early, *late]).M == chart_of([*late, early]).M
+
+
+@given(
+    st.floats(-10.0, 110.0), st.floats(-60.0, 60.0), st.floats(0.01, 10.0), st.booleans(),
+    st.lists(st.tuples(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0)), min_size=len(LAGS), max_size=len(LAGS)),
+)  # fmt: skip
+def test_a_record_says_where_the_air_was_within_the_unit_of_its_speeds(x, y, D, hit, winds):
+    way, wx, wy, before = [], 0.0, 0.0, 0.0
+    for (u, v), lag in zip(winds, LAGS, strict=True):
+        wx, wy, before = wx + u * (lag - before), wy + v * (lag - before), lag
+        way.append((wx, wy))
+    bits = pack(7, hit, x, y, D, way, ARENA)
+    event = unpack(bits, ARENA)
+    assert len(bits) == SIZE
+    assert (event.robot, event.hit) == (7, hit)
+    assert hypot(event.x - x, event.y - y) < 0.003
+    assert event.D == pytest.approx(D, rel=0.031)
+    before = 0.0
+    for (lag, bx, by), (dx, dy) in zip(event.way[1:], way, strict=True):
+        # Half a unit of the latest stretch, and no more: rounding does not add up.
+        unit = 0.05 * (lag - before)
+        assert abs(event.x - bx - dx) <= unit
+        assert abs(event.y - by - dy) <= unit
+        before = lag
+
+
+@given(st.binary(min_size=SIZE, max_size=SIZE), st.integers(0, 50))
+def test_any_bytes_are_some_event_and_the_map_takes_it(bits, k):
+    chart = chart_of([(k, bits)])
+    assert all(isinstance(m, int) for m in chart.M)
+
+
+def test_hits_and_misses_beside_each_other_say_where_the_plume_runs():
+    chart = chart_of((k, record(hit=abs(y) < 1.0, y=y)) for k in range(5) for y in (-4.0, -2.0, 0.0, 2.0, 4.0))
+    p = posterior(chart)
+    assert abs(p.y) < 0.3
+    assert p.yy < 1.5
+    assert p.x < 50.0  # upwind of the robots
+
+
+@pytest.mark.parametrize("speed", [0.71, 0.77, 0.83])
+@pytest.mark.parametrize("turn", [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7071, 0.7071), (-0.6, 0.8)])
+def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of_a_cell(turn, speed):
+    """Whatever way the wind blows, with the source on the corner of a cell. Hits weigh more than misses: it is placed some
+    0.3 m upwind, more or less with where each pass meets it between two samples."""
+    sx, sy = 40.0, 3.0
+    told = []
+    for k in range(120):
+        ahead = abs((speed * k) % 26.0 - 13.0) - 6.5  # metres downwind of the source
+        for robot, side in enumerate((-3.85, -1.85, 0.15, 2.15, 4.15)):
+            x, y = sx + ahead * turn[0] - side * turn[1], sy + ahead * turn[1] + side * turn[0]
+            told.append((k, record(robot, abs(side) < 0.9 and ahead > -0.65, x, y, wind=turn, D=0.05)))
+    p = posterior(chart_of(told))
+    assert hypot(p.x - sx, p.y - sy) < 0.6
+    assert spread(p) < 0.7
+
+
+def test_far_events_are_forgotten():
+    old = [(k, record(hit=True, y=20.0)) for k in range(20)]
+    new = [(k, record(hit=True, y=-20.0)) for k in range(1000, 1020)]
+    assert posterior(chart_of(old)).y == pytest.approx(20.0, abs=0.5)
+    assert posterior(chart_of(old + new)).y == pytest.approx(-20.0, abs=0.5)
+
+
+def test_without_wind_history_the_way_goes_on_at_the_mean_wind():
+    past = WindPast(TABLE, 1.0)
+    past.record((1.0, 0.5))
+    past.record((2.0, 0.5))
+    assert past.way()[0] == (3.0, 1.0)
+    assert past.way()[-1] == pytest.approx((110 * 1.5, 110 * 0.5))
+
+
+# The flood -----------------------------------------------------------------------------------------------------------
+
+GRAPHS = {
+    "line": [(i, j) for i in range(4) for j in range(4) if abs(i - j) == 1],
+    "ring": [(i, j) for i in range(4) for j in range(4) if abs(i - j) in (1, 3)],
+    "directed ring": [((i + 1) % 4, i) for i in range(4)],
+    "all": [(i, j) for i in range(4) for j in range(4) if i != j],
+}
+
+
+class Wires:
+    """Four robots that flood, stepped by hand; `edges` (i, j): i hears j."""
+
+    def __init__(self, edges, window=12):
+        self.edges = edges
+        linked = {i: {j for a, j in edges if a == i} | {a for a, j in edges if j == i} for i in range(4)}
+        self.robots = [Flood(4, window, [j for a, j in edges if a == i], linked[i]) for i in range(4)]
+        self.sets = [set() for _ in range(4)]
+        self.sent = 0
+
+    def second(self, k, keep=lambda i, j: True, ticks=8, mute=()):
+        for i, robot in enumerate(self.robots):
+            robot.clock(k)
+            if i not in mute:
+                assert robot.add((k, i), record(i))
+                self.sets[i].add((k, i))
+        for tick in range(ticks):
+            told = [robot.tell(tick == 0) for robot in self.robots]
+            self.sent += sum(map(len, told))
+            for i, j in self.edges:
+                if told[j] and keep(i, j):
+                    for _ in range(2):  # twice is once
+                        self.sets[i] |= {key for key, _ in self.robots[i].hear(j, told[j])}
+
+
+@pytest.mark.parametrize("graph", GRAPHS)
+def test_everybody_knows_every_event_after_as_many_ticks_as_the_graph_is_wide(graph):
+    wires = Wires(GRAPHS[graph])
+    wires.second(0)
+    wires.second(1)
+    assert all(known == {(k, i) for k in (0, 1) for i in range(4)} for known in wires.sets)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.sampled_from(sorted(GRAPHS)), st.randoms(use_true_random=False))
+def test_loss_only_delays(graph, random):
+    wires = Wires(GRAPHS[graph])
+    for k in range(4):
+        wires.second(k, keep=lambda i, j: random.random() < 0.7)
+    for k in range(4, 13):
+        wires.second(k, mute=range(4))
+    assert all(known == {(k, i) for k in range(4) for i in range(4)} for known in wires.sets)
+
+
+def test_a_line_of_which_half_the_edges_work_at_a_time_is_enough():
+    wires = Wires(GRAPHS["line"])
+    for k in range(10):
+        wires.second(k, keep=lambda i, j, k=k: (min(i, j) + k) % 2 == 0, mute=range(4) if k else ())
+    assert all(known == {(0, i) for i in range(4)} for known in wires.sets)
+
+
+def test_a_robot_that_joins_late_is_told_the_window():
+    wires = Wires(GRAPHS["line"])
+    for k in range(5):
+        wires.second(k, keep=lambda i, j: 3 not in (i, j))
+    wires.second(5)
+    wires.second(6)
+    assert wires.sets[3] >= {(k, i) for k in range(5) for i in range(4)}
+
+
+def test_robots_that_all_hear_each_other_send_an_event_once():
+    wires = Wires(GRAPHS["all"])
+    for k in range(20):
+        wires.second(k)
+    assert wires.sent / 20 / 4 < 60  # bytes a robot and second
+
+
+@given(st.binary(max_size=200))
+def test_foreign_bytes_never_raise_and_leave_no_robot_that_is_not_there(message):
+    flood = Flood(4, 12, [1], [1])
+    flood.clock(3)
+    for key, bits in flood.hear(1, message):
+        assert key[1] < 4
+        assert len(bits) == SIZE
+    flood.tell(True)
+
+
+def test_in_real_time_a_decision_whose_tick_was_missed_tells_its_event_and_what_it_has():
+    """At the first tick after it: a bitmap that waited for the very tick would not be told for as long as that is missed."""
+    scenario = view(algorithm="plume-map", topology="line")
+    decision = PlumeMapDecision(scenario)
+    first = Own(reading(0), scenario.body)
+    decision.record(first)
+    assert decision.events(first)
+    late = Own(reading(22), scenario.body, 18)
+    decision.record(late)
+    told = decision.events(late)
+    assert told[4] > 0  # a bitmap follows
+    assert not decision.events(Own(reading(23), scenario.body, 22))
+
+
+def test_an_own_position_after_a_hang_is_the_reading_and_not_what_the_wheels_would_have_made_of_it():
+    scenario = view(algorithm="plume-map", topology="line")
+    decision = PlumeMapDecision(scenario)
+    decision.record(Own(reading(0, x=50.0), scenario.body))
+    back = Own(reading(200, x=52.0), scenario.body, 0)
+    decision.record(back)
+    assert decision._place == (200, back.x, back.y)
