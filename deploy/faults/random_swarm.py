@@ -82,6 +82,8 @@ def _beliefs(draws: Draws) -> Values:
         values["control.relay"] = False
     if draws.uniform() < 0.2:
         values["decision.lost_after"] = 2.0
+    if draws.uniform() < 0.3:
+        values["timing.stale_after"] = one(draws, (0.1, 0.2, 2.0))
     return values
 
 

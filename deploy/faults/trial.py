@@ -22,7 +22,7 @@ import msgspec
 import psutil
 
 from deploy.checkers.check import History, read_folder, read_memory, unplanned
-from deploy.faults.random_fault import one
+from deploy.faults.random_fault import below, one
 from deploy.faults.random_schedule import random_scenario
 from deploy.launch.swarm import SwarmRun
 from deploy.memory_run import run_in_memory
@@ -50,7 +50,7 @@ class Trial(msgspec.Struct, frozen=True):
     faults: tuple[str, ...]  # kinds
     ended: str
     wrong: tuple[str, ...]  # empty: all is well
-    world_killed: bool = False
+    killed: str = ""  # member that was killed besides, over processes: "world", or a robot, which is no part of the plan
     wall_s: float = 0.0
 
 
@@ -80,7 +80,7 @@ def try_schedule(number: int, where: Where, max_time: float, deadline: float) ->
     except Exception as error:  # whatever it is, the other schedules go on
         found.wrong.append(f"{type(error).__name__} in {_place(error)}: {' '.join(str(error).split())}")
     wall_s = round(time.perf_counter() - began, 2)
-    return Trial(number, where, max_time, about, kinds, found.ended, tuple(found.wrong), found.world_killed, wall_s)
+    return Trial(number, where, max_time, about, kinds, found.ended, tuple(found.wrong), found.killed, wall_s)
 
 
 def describe(scenario: Scenario) -> str:
@@ -96,12 +96,17 @@ class _Found:
 
     ended: str = ""
     wrong: list[str] = field(default_factory=list)
-    world_killed: bool = False
+    killed: str = ""
 
-    def look(self, outcome: Outcome, expected: Outcome, history: History, against: str) -> None:
+    def look(self, outcome: Outcome, history: History) -> None:
+        """What holds of every run."""
         self.ended = outcome.ended
         if outcome.ended not in ENDS or outcome.failed:
             self.wrong.append(f"ended unplanned: {outcome.ended}")
+        self.wrong += [f"{finding.name}: {finding.counterexample}" for finding in unplanned(history)]
+
+    def compare(self, outcome: Outcome, expected: Outcome, against: str) -> None:
+        """What holds of two runs of one scenario."""
         for name in Outcome.__struct_fields__:
             this, that = getattr(outcome, name), getattr(expected, name)
             if name not in BY_THE_WALL and this != that:
@@ -109,52 +114,61 @@ class _Found:
         refused, expected_refused = outcome.messages["refused"], expected.messages["refused"]  # impossible states, too
         if refused != expected_refused:
             self.wrong.append(f"{refused} messages were refused, and {expected_refused} {against}")
-        self.wrong += [f"{finding.name}: {finding.counterexample}" for finding in unplanned(history)]
 
 
 def _in_memory(scenario: Scenario, found: _Found) -> None:
     histories = HistoryMemory()
     first = run_in_memory(scenario, history=histories)
     second = run_in_memory(scenario, wire=True)
-    found.look(first, second, read_memory(histories), "the second time")
+    found.compare(first, second, "the second time")
+    found.look(first, read_memory(histories))
 
 
 def _over_processes(number: int, scenario: Scenario, found: _Found) -> None:
     expected = run_in_memory(scenario)
-    network = msgspec.structs.replace(scenario.network, lease_ms=LEASE)
+    tcp = rng_for(number, "schedule", "transport").uniform() < 0.2
+    network = msgspec.structs.replace(scenario.network, lease_ms=LEASE, transport="tcp" if tcp else "auto")
     scenario = msgspec.structs.replace(scenario, network=network)
     disturber = _Disturber(found)
-    draws = rng_for(number, "schedule", "world killed")
-    if draws.uniform() < 0.4:
-        supervision = msgspec.structs.replace(scenario.supervision, checkpoint_every=one(draws, (0.5, 1.0, 2.0)))
-        scenario = msgspec.structs.replace(scenario, supervision=supervision)
-        disturber.kill_at = int(draws.uniform() * 0.7 * scenario.max_time / scenario.timing.tick)
+    draws = rng_for(number, "schedule", "killed")
+    which = draws.uniform()
+    kill_at = int(draws.uniform() * 0.7 * scenario.max_time / scenario.timing.tick)
+    supervision = scenario.supervision
+    if which < 0.5:
+        supervision = msgspec.structs.replace(supervision, checkpoint_every=one(draws, (0.5, 1.0, 2.0)))
+        disturber.kill = (kill_at, keys.WORLD)
+    if 0.35 < which < 0.7:
+        supervision = msgspec.structs.replace(supervision, restart="always")
+        disturber.kill = (kill_at, keys.robot_name(below(draws, scenario.robots)))
+    scenario = msgspec.structs.replace(scenario, supervision=supervision)
     name = f"try-{os.getpid()}-{number}"
     with tempfile.TemporaryDirectory(prefix="odour-try-") as folder:
         try:
             run = disturber.run = SwarmRun(name, scenario, history=Path(folder))
             outcome = run.execute(disturber)
-            found.look(outcome, expected, read_folder(Path(folder)), "in memory")
+            found.look(outcome, read_folder(Path(folder)))
+            if found.killed in ("", keys.WORLD):  # a robot that nobody planned to lose makes another run of it
+                found.compare(outcome, expected, "in memory")
         finally:
             found.wrong += [f"left behind: {words}" for words in _left_behind(name)]
 
 
 @dataclass(slots=True)
 class _Disturber:
-    """Watches a run, and kills its world once."""
+    """Watches a run, and kills one of its processes once."""
 
     found: _Found
     run: SwarmRun | None = None
-    kill_at: int | None = None  # tick
+    kill: tuple[int, str] | None = None  # from which tick on, whom
 
     def progress(self, progress: Progress) -> None:
-        if self.kill_at is None or progress.tick < self.kill_at or self.run is None or self.run.children is None:
+        if self.kill is None or progress.tick < self.kill[0] or self.run is None or self.run.children is None:
             return
-        self.kill_at = None
-        world = self.run.children.members[keys.WORLD].process
-        if world.poll() is None:
-            world.kill()
-            self.found.world_killed = True
+        (_, name), self.kill = self.kill, None
+        process = self.run.children.members[name].process
+        if process.poll() is None:
+            process.kill()
+            self.found.killed = name
 
     def event(self, event: Event) -> None:
         """Nobody listens."""

@@ -5,9 +5,10 @@
     python tests/benchmarks/bench_faults.py --toml 137                 # its scenario, as a file for `odourswarm run`
 
 In memory every schedule is run twice, once of these with every message through the codec; over real processes once, against
-a run in memory; in some of these the world is killed (SIGKILL) and comes back from its checkpoint. The checkers go over
-the histories of both. Every result is a line of --out as soon as it is there; what stands there already is not run again.
-The command that repeats a failure is listed at the end; exit status 1 when there is one.
+a run in memory; in some of these the world is killed (SIGKILL) and comes back from its checkpoint, or a robot is killed
+that no fault kills, and is started again (such a run is another one than in memory). The checkers go over all histories.
+Every result is a line of --out as soon as it is there; what succeeded there already is not run again. The command that
+repeats a failure is listed at the end; exit status 1 when there is one.
 """
 
 from __future__ import annotations
@@ -102,8 +103,8 @@ def report(trials: list[Trial], wall_s: float) -> None:
         of = [trial for trial in trials if trial.where == where]
         if of:
             ends = Counter(trial.ended or "without an outcome" for trial in of)
-            killed = sum(trial.world_killed for trial in of)
-            said = f", the world killed in {killed}" if killed else ""
+            worlds, robots = sum(trial.killed == "world" for trial in of), sum("robot" in trial.killed for trial in of)
+            said = f", the world killed in {worlds} and a robot in {robots}" if worlds or robots else ""
             print(f"{where}: {len(of)} schedules{said}, {sum(bool(trial.wrong) for trial in of)} failed; ended {dict(ends)}")
     orphans = sum(words.startswith("left behind") for trial in trials for words in trial.wrong)
     print(f"{orphans} orphans; {wall_s:.0f} s")
@@ -142,7 +143,7 @@ def main() -> None:
                 keep(given.out, trial)
             if trial.wrong or where == "processes" or given.only or done % 50 == 0:
                 verdict = "; ".join(trial.wrong) or trial.ended
-                killed = ", the world killed" if trial.world_killed else ""
+                killed = f", {trial.killed} killed" if trial.killed else ""
                 print(f"  {where} {trial.number} ({trial.about}{killed}, {trial.wall_s:.1f} s): {verdict}", flush=True)
     report(trials, time.perf_counter() - began)
     failures = [trial for trial in trials if trial.wrong]
