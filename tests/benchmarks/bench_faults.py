@@ -19,7 +19,7 @@ import os
 import sys
 import threading
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -36,20 +36,23 @@ DEADLINES: dict[Where, float] = {"memory": 300.0, "processes": 300.0}  # wall-cl
 
 
 def run_all(tasks: list[Task], jobs: int, max_time: float) -> Iterator[Trial]:
-    """The trials as they end. A worker process that dies takes with it what it had: that is tried again alone, once."""
-    alone = False
-    while tasks:
-        todo, tasks = tasks, []
-        context = multiprocessing.get_context("spawn")
+    """The trials as they end. A worker process that dies takes with it what it had: that is tried again, each alone."""
+    queue, lost = deque(tasks), deque[Task]()
+    context = multiprocessing.get_context("spawn")
+    while queue or lost:
+        alone = bool(lost)
+        todo = deque((lost.popleft(),)) if alone else queue
+        pending: dict[Future[Trial], Task] = {}
         with ProcessPoolExecutor(1 if alone else jobs, mp_context=context, initializer=end_with_parent) as pool:
-            pending: dict[Future[Trial], Task] = {}
-            queue = iter(todo)
             broken = False
-            while True:
-                while not broken and len(pending) < (1 if alone else jobs) and (task := next(queue, None)) is not None:
-                    pending[pool.submit(try_schedule, *task, max_time, DEADLINES[task[1]])] = task
-                if not pending:
-                    break
+            while pending or (todo and not broken):
+                while todo and len(pending) < jobs and not broken:
+                    task = todo.popleft()
+                    try:
+                        pending[pool.submit(try_schedule, *task, max_time, DEADLINES[task[1]])] = task
+                    except BrokenProcessPool:
+                        todo.appendleft(task)
+                        broken = True
                 for future in wait(pending, return_when=FIRST_COMPLETED).done:
                     task = pending.pop(future)
                     try:
@@ -59,8 +62,7 @@ def run_all(tasks: list[Task], jobs: int, max_time: float) -> Iterator[Trial]:
                         if alone:
                             yield Trial(*task, max_time, "", (), "", ("the process that ran it died",))
                         else:
-                            tasks.append(task)
-        tasks, alone = tasks + list(queue), broken and not alone
+                            lost.append(task)
 
 
 def end_with_parent() -> None:
