@@ -13,8 +13,8 @@ from robot_agent.algorithms import ALGORITHMS
 
 MOST_ROBOTS = 9
 GRAPHS = ("all", "ring", "line", "star", "k-nearest", "random", "range-limited", "directed-ring")
-# x of the column that they start from, m: the source is at (10, 0), the odour comes along y = 0.
-AT_THE_SOURCE, NEAR, FAR = 11.5, 25.0, 60.0
+# x of the column that they start from, m: the source is at (10, 0), and they set out towards larger x.
+AT_THE_SOURCE, NEAR, FAR = 8.5, 25.0, 60.0
 
 Values = dict[str, object]  # by dotted name, as flags are
 
