@@ -67,8 +67,10 @@ def run(
             topology=topology, wind=wind, seed=seed, max_time=max_time, stop=stop, fusion=fusion, clock=clock, speed=speed,
             restart=restart, checkpoint_every=checkpoint_every,
         )  # fmt: skip
-        checkpoint_folder(checkpoint, scenario)
         _fits(scenario, bus, speed)
+        if bus == "memory":
+            _no_processes(restart, checkpoint_every)
+        checkpoint_folder(checkpoint, scenario)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -132,6 +134,17 @@ def _fits(scenario: Scenario, bus: str, speed: float | None) -> None:
         raise ScenarioError('--bus is "memory", and the clock is realtime; one process runs in lock-step only: --bus zenoh.')
     if scenario.clock == "lockstep" and speed is not None:
         raise ScenarioError(f"--speed is {speed:g}, and lock-step goes as fast as the machine; add --clock realtime.")
+
+
+def _no_processes(restart: str | None, checkpoint_every: float | None) -> None:
+    """Refuse what is asked for the sake of processes that end, where there are none."""
+    for flag, value in (("--restart", restart if restart != "never" else None), ("--checkpoint-every", checkpoint_every)):
+        if value:
+            given = f'"{value}"' if isinstance(value, str) else f"{value:g}"
+            raise ScenarioError(
+                f'{flag} is {given}, and --bus is "memory": one process has no others to start again; leave {flag} out, or'
+                " --bus zenoh."
+            )
 
 
 def _writable(record: Path | None) -> None:

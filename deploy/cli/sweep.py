@@ -17,6 +17,8 @@ from protocol.shell import EXIT_BAD_INPUT, EXIT_FAILED
 if TYPE_CHECKING:
     from deploy.sweep.plan import Plan
 
+MOST_BROKEN = 5  # broken promises that are told one by one
+
 
 def sweep(
     spec: Annotated[
@@ -28,6 +30,9 @@ def sweep(
     ] = None,
     summary: Annotated[bool, Option("--summary", help="Only say what came out; SPEC may be a result, too.")] = False,
     fresh: Annotated[bool, Option("--fresh", help="Forget the runs that are finished, and run all again.")] = False,
+    check: Annotated[
+        bool, Option("--check", help="Look whether each run keeps its promises, as `check` does; takes longer.")
+    ] = False,
     plot: Annotated[
         Path | None, Option("--plot", metavar="FILE.png", help="Draw what came out, against what the study varies.")
     ] = None,
@@ -38,13 +43,13 @@ def sweep(
     from deploy.cli.sweep_print import print_studies
 
     try:
-        _check(spec, form, plot, summary=summary)
+        _check(spec, form, plot, summary=summary, check=check)
         if spec is None:
             print_studies(json=json)
         elif summary:
             _summary(spec, out, form, plot, json=json)
         else:
-            _sweep(spec, out, jobs, form, plot, fresh=fresh, json=json)
+            _sweep(spec, out, jobs, form, plot, fresh=fresh, check=check, json=json)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -57,7 +62,15 @@ def sweep(
 
 
 def _sweep(
-    spec: str, out: Path | None, jobs: int | None, form: str, plot: Path | None, *, fresh: bool, json: bool
+    spec: str,
+    out: Path | None,
+    jobs: int | None,
+    form: str,
+    plot: Path | None,
+    *,
+    fresh: bool,
+    check: bool,
+    json: bool,
 ) -> None:
     from deploy.cli.sweep_print import print_report, print_summary
     from deploy.cli.sweep_progress import SweepDisplay
@@ -70,7 +83,7 @@ def _sweep(
     signal.signal(signal.SIGTERM, _terminate)
     try:
         with SweepDisplay(plan.spec.name) as display:
-            report = execute(plan, file, jobs or default_jobs(), display, fresh=fresh)
+            report = execute(plan, file, jobs or default_jobs(), display, fresh=fresh, check=check)
     except KeyboardInterrupt:
         complain(f"interrupted; {file} has what was finished, the same command goes on from there.")
         raise typer.Exit(INTERRUPTED) from None
@@ -81,6 +94,11 @@ def _sweep(
     if plot is not None and report.rows:
         draw(report.rows, plan.varied, plan.spec.title, plot)
     complain(f"{file} has {len(report.rows)} of {report.runs} runs.")
+    broken = [row for row in report.rows if row["kept"] is False]
+    for row in broken[:MOST_BROKEN]:
+        complain(f"a promise was broken: {row['broken']} ({row['label']}, seed {row['seed']}, {row['scenario_digest']}).")
+    if len(broken) > MOST_BROKEN:
+        complain(f"and {len(broken) - MOST_BROKEN} runs more; the columns kept and broken of {file} have all of them.")
     if report.failed:
         complain(f"{len(report.failed)} runs failed; the same command tries them again.")
         raise typer.Exit(EXIT_FAILED)
@@ -124,7 +142,7 @@ def _plan(spec: str, out: Path | None) -> tuple[Plan, Path]:
     return plan, out or Path("results") / f"{plan.spec.name}.parquet"
 
 
-def _check(spec: str | None, form: str, plot: Path | None, *, summary: bool) -> None:
+def _check(spec: str | None, form: str, plot: Path | None, *, summary: bool, check: bool) -> None:
     from deploy.sweep.tables import FORMATS
 
     if plot is not None and (spec is None or plot.suffix not in (".png", ".svg", ".pdf") or not plot.parent.is_dir()):
@@ -133,6 +151,8 @@ def _check(spec: str | None, form: str, plot: Path | None, *, summary: bool) -> 
 
     if form not in FORMATS:
         raise ScenarioError(f'--format is "{form}"; it must be table, csv or markdown.')
+    if check and (summary or spec is None):
+        raise ScenarioError("--check looks at runs while they are made; give it with a sweep's file, and without --summary.")
     if spec is None and summary:
         raise ScenarioError("--summary: give the result of a sweep, its spec, or a study by name.")
 

@@ -54,13 +54,16 @@ def default_jobs() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def execute(plan: Plan, out: Path, jobs: int, watcher: Watcher, *, fresh: bool = False) -> Report:
+def execute(
+    plan: Plan, out: Path, jobs: int, watcher: Watcher, *, fresh: bool = False, check: bool = False
+) -> Report:
     """Run what is not finished of `plan`; the report.
 
     Args:
         out: the result's file.
         jobs: how many worker processes.
         fresh: forget what is finished.
+        check: look whether each run keeps its promises; what was finished without is run again.
     Raises:
         ScenarioError: `out` is not to be used.
         SwarmFailure: no worker can be started.
@@ -71,17 +74,18 @@ def execute(plan: Plan, out: Path, jobs: int, watcher: Watcher, *, fresh: bool =
         if fresh:
             forget(out)
         store = Store(out, plan)
-        report = Report(out, len(plan.jobs), reused=len(store.rows), foreign=store.foreign, ignored=store.ignored)
+        done = {digest for digest, row in store.rows.items() if not check or row["kept"] is not None}
+        report = Report(out, len(plan.jobs), reused=len(done), foreign=store.foreign, ignored=store.ignored)
         # Seed by seed through all cells: when it is interrupted every cell has as many, and the time left is well known.
-        left = [job for job in plan.jobs if job.digest not in store.rows]
+        left = [job for job in plan.jobs if job.digest not in done]
         left.sort(key=lambda job: job.scenario.seed)
         began = time.monotonic()
         try:
-            with Workers(min(jobs, len(left))) as workers:
+            with Workers(min(jobs, len(left)), check=check) as workers:
                 watcher.begin(report, min(jobs, len(left)))
                 for result in workers.run(left, PAUSE):
                     if result is not None and result.outcome is not None:
-                        store.add(make_row(result.job, result.outcome))
+                        store.add(make_row(result.job, result.outcome, result.broken))
                         report.ran += 1
                         report.rows.append(store.rows[result.job.digest])
                     elif result is not None:

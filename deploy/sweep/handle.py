@@ -80,11 +80,11 @@ class Handle:
         return next((line for line in reversed(lines) if line), "it said nothing.")
 
 
-def start() -> Handle:
-    """A new worker; it says when it is ready."""
+def start(*, check: bool = False) -> Handle:
+    """A new worker; it says when it is ready. `check`: it looks whether its runs kept their promises."""
     log = tempfile.TemporaryFile()  # noqa: SIM115  (open as long as the worker)
     process = subprocess.Popen(
-        [sys.executable, "-m", "deploy.sweep.worker"],
+        [sys.executable, "-m", "deploy.sweep.worker", *(["--check"] if check else [])],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=log,

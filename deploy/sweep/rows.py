@@ -48,15 +48,19 @@ MEASURED: dict[str, pa.DataType] = {
     "declaration_delay": pa.float64(),  # from reaching to declaring, s
     "false_declaration": pa.bool_(),
     "version": pa.string(),  # of odourswarm
+    "kept": pa.bool_(),  # the run kept its promises; null: it was not checked
+    "broken": pa.string(),  # name of the first promise that it broke, "": none
 }
+OURS = ("version", "kept", "broken")  # of these, what `Outcome` does not say
 NEEDED = ("label", "algorithm", "max_time", "scenario_digest", "found", "time")  # without these it is something else
 _TYPES: dict[type, pa.DataType] = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
 
 
-def make_row(job: Job, outcome: Outcome) -> Row:
-    """The row of a run that is over."""
-    measured = {name: getattr(outcome, name) for name in MEASURED if name != "version"}
-    return {**_named(job), **measured, "version": our_version()}
+def make_row(job: Job, outcome: Outcome, broken: str | None = None) -> Row:
+    """The row of a run that is over; `broken` is what the checkers said, None when they were not asked."""
+    measured = {name: getattr(outcome, name) for name in MEASURED if name not in OURS}
+    kept = None if broken is None else not broken
+    return {**_named(job), **measured, "version": our_version(), "kept": kept, "broken": broken}
 
 
 def relabel(job: Job, row: Row) -> Row:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from statistics import fmean, median, stdev
 
 from deploy.sweep.declared import Declared, declared_of
+from deploy.sweep.kept import Kept, kept_of
 from deploy.sweep.rows import Row
 
 CONFIDENCE = 0.95
@@ -38,6 +39,7 @@ class CellSummary:
     estimate_error: float | None  # m, the median over the runs; of a run the mean of the robots that have an estimate
     estimate_error_interval: Interval  # percentile bootstrap, 95 %
     declared: Declared | None = None  # what the swarm said; None: nothing
+    kept: Kept | None = None  # what the checkers said; None: they were not asked
 
     @property
     def share(self) -> float:
@@ -102,6 +104,7 @@ def _cell(values: dict[str, object], rows: list[Row]) -> CellSummary:
         estimate_error=median(errors) if errors else None,
         estimate_error_interval=_bootstrap(errors),
         declared=declared_of(rows),
+        kept=kept_of(rows),
     )
 
 

@@ -9,7 +9,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from deploy.sweep import declared
+from deploy.sweep import declared, kept
 from deploy.sweep.summary import CellSummary, Interval
 
 FORMATS = ("table", "csv", "markdown")
@@ -18,13 +18,14 @@ HEADINGS = ("runs", "found, %", "median, s", "mean, s", "std, s", "nearest, m", 
 
 
 def headings(cells: Sequence[CellSummary]) -> tuple[str, ...]:
-    """Of the numbers of `fields`: what the swarms declared only where one did."""
-    return (*HEADINGS, *declared.HEADINGS) if _any_declared(cells) else HEADINGS
+    """Of the numbers of `fields`: what the swarms declared only where one did, what the checkers said where they did."""
+    said = declared.HEADINGS if _any_declared(cells) else ()
+    return (*HEADINGS, *said, *(kept.HEADINGS if _any_checked(cells) else ()))
 
 
 def objects(cells: Sequence[CellSummary]) -> list[dict[str, object]]:
     """Each cell as a flat object; an interval is two numbers, `_low` and `_high`."""
-    with_declared = _any_declared(cells)
+    with_declared, with_kept = _any_declared(cells), _any_checked(cells)
     return [
         {
             **cell.values,
@@ -43,6 +44,7 @@ def objects(cells: Sequence[CellSummary]) -> list[dict[str, object]]:
             "estimate_error": cell.estimate_error,
             **_ends("estimate_error", cell.estimate_error_interval),
             **(declared.numbers(cell.declared) if with_declared else {}),
+            **(kept.numbers(cell.kept) if with_kept else {}),
         }
         for cell in cells
     ]
@@ -87,11 +89,17 @@ def table(cells: Sequence[CellSummary]) -> list[list[str]]:
     rows = [fields(cell) for cell in cells]
     if _any_declared(cells):
         rows = [[*row, *declared.fields(cell.declared)] for row, cell in zip(rows, cells, strict=True)]
+    if _any_checked(cells):
+        rows = [[*row, *kept.fields(cell.kept)] for row, cell in zip(rows, cells, strict=True)]
     return rows
 
 
 def _any_declared(cells: Sequence[CellSummary]) -> bool:
     return any(cell.declared is not None for cell in cells)
+
+
+def _any_checked(cells: Sequence[CellSummary]) -> bool:
+    return any(cell.kept is not None for cell in cells)
 
 
 def _value(value: object) -> str:

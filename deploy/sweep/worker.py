@@ -1,4 +1,4 @@
-"""`python -m deploy.sweep.worker`: runs scenarios in memory, one after the other.
+"""`python -m deploy.sweep.worker [--check]`: runs scenarios in memory, one after the other, and checks them when asked to.
 
 A line of JSON comes in for each scenario, one goes out for each outcome. Rules: standard input is the leash; when it ends
 the process ends at once, in the middle of a run, for whoever wanted the outcome is gone. A Ctrl-C at the terminal is the
@@ -28,6 +28,7 @@ class Answer(msgspec.Struct, frozen=True, omit_defaults=True):
     ready: bool = False
     outcome: Outcome | None = None
     error: str = ""
+    broken: str | None = None  # name of the first promise that was broken, "": none; None: it was not checked
 
 
 def main() -> None:
@@ -38,19 +39,36 @@ def main() -> None:
     os.dup2(2, 1)
     tasks: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_read, args=(tasks,), daemon=True, name="leash").start()
-    from deploy.memory_run import run_in_memory
-
     encoder = msgspec.json.Encoder()
+    run = _checked if "--check" in sys.argv[1:] else _plain
     answer = Answer(ready=True)
     while True:
         answers.write(encoder.encode(answer) + b"\n")
         answers.flush()
         try:
-            answer = Answer(outcome=run_in_memory(msgspec.json.decode(tasks.get(), type=Scenario), run="sweep"))
+            answer = run(msgspec.json.decode(tasks.get(), type=Scenario))
         except OdourswarmError as error:
             answer = Answer(error=str(error))
         except Exception as error:
             answer = Answer(error=_sentence(error))
+
+
+def _plain(scenario: Scenario) -> Answer:
+    from deploy.memory_run import run_in_memory
+
+    return Answer(outcome=run_in_memory(scenario, run="sweep"))
+
+
+def _checked(scenario: Scenario) -> Answer:
+    """The same run, with a history that is looked at and forgotten."""
+    from deploy.checkers.check import read_memory, unplanned
+    from deploy.memory_run import run_in_memory
+    from protocol.history.file import HistoryMemory
+
+    histories = HistoryMemory()
+    outcome = run_in_memory(scenario, run="sweep", history=histories)
+    broken = unplanned(read_memory(histories))
+    return Answer(outcome=outcome, broken=broken[0].name if broken else "")
 
 
 def _read(tasks: SimpleQueue[bytes]) -> None:

@@ -30,13 +30,15 @@ class Result:
     job: Job
     outcome: Outcome | None
     error: str = ""
+    broken: str | None = None  # see `worker.Answer`
 
 
 class Workers:
     """At most so many workers; as a context, which ends them."""
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, most: int, *, check: bool = False) -> None:
         self._most = most
+        self._check = check
         self._selector = selectors.DefaultSelector()
         self._members: list[Handle] = []
         self._queue: deque[Job] = deque()
@@ -77,7 +79,7 @@ class Workers:
                 member.give(self._queue.popleft())
         starting = sum(not member.ready for member in self._members)
         while len(self._members) < self._most and starting < len(self._queue):
-            member = start()
+            member = start(check=self._check)
             self._members.append(member)
             self._selector.register(member.output, selectors.EVENT_READ, member)
             starting += 1
@@ -100,7 +102,7 @@ class Workers:
         if answer.ready:
             member.ready, self._failed_starts = True, 0
         elif job is not None:
-            yield Result(job, answer.outcome, answer.error)
+            yield Result(job, answer.outcome, answer.error, answer.broken)
 
     def _lose(self, member: Handle) -> Iterator[Result]:
         """A worker has died: its run has another chance."""

@@ -14,7 +14,7 @@ import msgspec
 from protocol.errors import ScenarioError
 from protocol.scenario.scenario import Scenario
 from protocol.scenario.settings import where
-from protocol.scenario.stage import Edge, Stage
+from protocol.scenario.stage import Edge, Stage, label
 from protocol.topology.find import find_graph, size_fault
 from protocol.topology.graph import Graph, fault_in
 from protocol.topology.named import TOPOLOGIES
@@ -56,8 +56,11 @@ def resolve(
             raise ScenarioError(where(origins, "topology", "robots") + fault)
     filled = tuple(_filled(stage, graph, scenario) for stage, graph in zip(stages, graphs, strict=True))
     switching = bool(scenario.schedule) or any(stage.range > 0.0 for stage in filled)
+    # The ranges that were filled in are part of a schedule's name: written down and read again it is the same scenario.
+    name = label(filled) if scenario.schedule else scenario.topology
+    edges = union(stage.edges for stage in filled)
     return msgspec.structs.replace(
-        scenario, robots=robots, graph=union(stage.edges for stage in filled), schedule=filled if switching else ()
+        scenario, robots=robots, topology=name, graph=edges, schedule=filled if switching else ()
     )
 
 

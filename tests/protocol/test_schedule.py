@@ -113,7 +113,8 @@ def test_a_graph_and_a_schedule_are_not_both_given() -> None:
 
 
 @pytest.mark.parametrize("topology", [LINE_STAR, "range-limited", "random", "k-nearest", "directed-ring",
-                                      [{"at": 0, "name": "ring"}], [{"at": 0, "name": "ring", "range": 5}]])  # fmt: skip
+                                      [{"at": 0, "name": "ring"}], [{"at": 0, "name": "ring", "range": 5}],
+                                      [{"at": 0, "name": "line"}, {"at": 4, "name": "range-limited"}]])  # fmt: skip
 def test_printing_and_reading_gives_the_same_scenario(topology: object, tmp_path: Path) -> None:
     scenario = load(topology=topology, seed=4, graph_options__period=30)
     (tmp_path / "s.toml").write_text(dump_toml(scenario))

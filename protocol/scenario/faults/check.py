@@ -96,12 +96,17 @@ def _overlaps(faults: tuple[Fault, ...]) -> Iterator[tuple[str, tuple[str, ...]]
     stops = [(n, fault) for n, fault in enumerate(faults, 1) if isinstance(fault, Crash | Hang)]
     for m, (n, later) in enumerate(stops):
         for k, earlier in stops[:m]:
-            if later.robot == earlier.robot and later.at < _back(earlier) and earlier.at < _back(later):
+            if stopped_twice(earlier, later):
                 yield (
                     f"[[faults]] {k} and {n} stop robot {later.robot} at the same time, from {earlier.at:g} s"
                     f" and from {later.at:g} s; the second must begin after the first is over.",
                     ("faults",),
                 )
+
+
+def stopped_twice(one: Crash | Hang, other: Crash | Hang) -> bool:
+    """Whether both stop the same robot at the same time."""
+    return one.robot == other.robot and other.at < _back(one) and one.at < _back(other)
 
 
 def _back(fault: Crash | Hang) -> float:
