@@ -25,7 +25,7 @@ MAX_FRAME = 1 << 20  # bytes
 
 KINDS: tuple[type[m.Message], ...] = (
     m.Reading, m.Shared, m.Drive, m.Report, m.Halt, m.Belief, m.Truth, m.Field, m.Event, m.Progress, m.Outcome,
-    m.Ask, m.Join, m.Answer, m.Resume, m.Linked, m.Inject, m.BeliefMap,
+    m.Ask, m.Join, m.Answer, m.Resume, m.Linked, m.Inject, m.BeliefMap, m.Stopped,
 )  # fmt: skip
 _KIND_OF = {cls: kind for kind, cls in enumerate(KINDS)}
 _PREFIX = {cls: b"Os" + bytes((SCHEMA_VERSION, kind)) for cls, kind in _KIND_OF.items()}

@@ -11,6 +11,7 @@
 | robot/{i}/resume       | world -> robot i                 | after a hang: the tick of its next reading   |
 | robot/{i}/linked       | robot i -> world                 | who of its neighbours is linked to it now    |
 | inject                 | world -> launcher                | a planned fault of a process is due          |
+| stopped                | launcher -> world -> robots      | a robot's process stands still, or goes on   |
 | robot/{i}/belief       | robot i -> recorder              | telemetry, best effort                       |
 | robot/{i}/map          | robot i -> recorder              | its map of the source, best effort           |
 | truth, field, events   | world -> recorder                | telemetry, best effort                       |
@@ -27,7 +28,7 @@ ROOT = "odour"
 RUN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
 READING, SHARED, DRIVE, REPORT, BELIEF, MAP = "reading", "shared", "drive", "report", "belief", "map"
-RESUME, LINKED, INJECT = "resume", "linked", "inject"
+RESUME, LINKED, INJECT, STOPPED = "resume", "linked", "inject", "stopped"
 TRUTH, FIELD, EVENTS, PROGRESS, OUTCOME, HALT = "truth", "field", "events", "progress", "outcome", "halt"
 SCENARIO, JOIN = "scenario", "join"
 

@@ -154,6 +154,13 @@ class Belief(Message, frozen=True, array_like=True, gc=False):
     refused: int
 
 
+class Stopped(Message, frozen=True, array_like=True, gc=False):
+    """Launcher to world, which passes it on to its robots: a robot's process stands still, or goes on again."""
+
+    robot: int
+    stopped: bool
+
+
 class BeliefMap(Message, frozen=True, array_like=True, gc=False):
     """Robot to recorder, every few seconds: how probable it holds each place for the source's. Best effort."""
 

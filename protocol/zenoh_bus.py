@@ -7,6 +7,12 @@ Nothing that a peer does raises here; nothing waits without a way out.
 Liveliness: a member announces itself when it first listens or looks around (`receive`, `ask`, `links`, `matched`), that
 is after its subscriptions; its neighbours learn of the subscriptions first. A crash is seen when the socket closes, a
 hang when a link was silent for the lease.
+
+What is listened to begins with a wildcard, "*/{run}/...", though it is always "odour/{run}/...". For keys without one at
+the start two Zenoh sessions agree on numbers, per link, and send these. A process that comes back over a new link, before
+its peer has done with the old one, may be taken for the same link (eclipse-zenoh/zenoh issues 1886 and 2806); then the
+peer goes on sending the old numbers, which mean other keys now, and messages arrive under wrong keys. Keys that begin
+with a wildcard have no number: what is said under them is sent with its key in full, and cannot be taken for another.
 """
 
 from __future__ import annotations
@@ -81,6 +87,7 @@ class ZenohBus:
         self._inbox = Inbox(self.counters)
         self._roll = Roll(self._inbox.push)
         self._prefix = f"{ROOT}/{run}/"
+        self._heard = f"*/{run}/"  # the same for what is listened to
         self._publishers: dict[str, Any] = {}
         self._declared: list[Any] = []  # kept, or Zenoh would undeclare them
         self._names: dict[str, str] = {}  # session id -> member
@@ -121,7 +128,9 @@ class ZenohBus:
 
         handler = Callback(on_sample, indirect=False)
         declare = self._session.declare_subscriber
-        self._declared.append(declare(self._prefix + key, handler, allowed_origin=_REMOTE))
+        self._declared.append(declare(self._heard + key, handler, allowed_origin=_REMOTE))
+        if whole is not None:  # Zenoh looks up once who listens to it, not with every message; nobody else is told
+            self._declared.append(self._session.declare_keyexpr(self._prefix + key))
 
     def serve(self, key: str, kind: type[Message]) -> None:
         offer, cut = self._inbox.offer, len(self._prefix)
@@ -136,7 +145,7 @@ class ZenohBus:
 
         handler = Callback(on_query, indirect=False)
         declare = self._session.declare_queryable
-        self._declared.append(declare(self._prefix + key, handler, complete=True, allowed_origin=_REMOTE))
+        self._declared.append(declare(self._heard + key, handler, complete=True, allowed_origin=_REMOTE))
 
     def ask(self, key: str, question: Message, timeout: float) -> Message | None:
         """First reply to a query, or None when nobody answered within `timeout` seconds.
@@ -219,7 +228,7 @@ class ZenohBus:
 
         handler = Callback(on_token, indirect=False)
         declare = self._session.liveliness().declare_subscriber
-        self._declared.append(declare(f"{self._prefix}{_ALIVE}**", handler, history=True))
+        self._declared.append(declare(f"{self._heard}{_ALIVE}**", handler, history=True))
 
     def _opened(self, key: str, kinds: frozenset[type[Message]], frame: bytes, query: Any) -> BusEvent | None:
         """What a frame that arrived says; None when it is refused."""

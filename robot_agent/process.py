@@ -17,7 +17,7 @@ from protocol import keys
 from protocol.bus import Bus, Delivery, Lost, Seen
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Belief, BeliefMap, Drive, Halt, Join, Reading, Resume, Shared
+from protocol.messages import Answer, Ask, Belief, BeliefMap, Drive, Halt, Join, Reading, Resume, Shared, Stopped
 from protocol.scenario import RobotScenario, lease_ms
 from protocol.scenario.place import RobotPlace
 from protocol.shell import settle_memory
@@ -180,6 +180,8 @@ class RobotProcess:
                     session.take_reading(message)
                 elif isinstance(message, Resume):
                     links.resume(message)
+                elif isinstance(message, Stopped):
+                    (session.lose if message.stopped else session.see)(message.robot)
                 elif isinstance(message, Halt) and not halted:
                     halted = True
                     self.say(f"the run is over: {message.reason}")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from protocol import keys
 from protocol.bus import Bus, BusEvent, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
-from protocol.messages import Drive, Halt, Reading, Report, Shared
+from protocol.messages import Drive, Halt, Reading, Report, Shared, Stopped
 from protocol.scenario import RobotScenario
 from protocol.shell import settle_memory
 from robot_agent.agent import Agent
@@ -93,6 +93,9 @@ class RealtimePart:
                     self.bus.counters.refused += 1
             elif isinstance(message, Reading):
                 self.session.take_reading(message)
+            elif isinstance(message, Stopped):
+                if message.robot in self.sender.values():
+                    self.say(f"{keys.robot_name(message.robot)} is {'lost' if message.stopped else 'there'}")
             elif isinstance(message, Halt) and not self._halted:
                 self._halted = True
                 self.say(f"the run is over: {message.reason}; {self.session.missed} control periods were missed")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from protocol import keys
 from protocol.bus import Bus, Publish
-from protocol.messages import Halt, Reading, Resume, Shared
+from protocol.messages import Halt, Reading, Resume, Shared, Stopped
 from protocol.scenario import RobotScenario
 
 
@@ -27,6 +27,7 @@ def wire(bus: Bus, view: RobotScenario) -> Wires:
     bus.subscribe(keys.robot(i, keys.READING), Reading)
     bus.subscribe(keys.robot(i, keys.RESUME), Resume)
     bus.subscribe(keys.HALT, Halt)
+    bus.subscribe(keys.STOPPED, Stopped)
     for j, _ in view.row:
         bus.subscribe(keys.robot(j, keys.SHARED), Shared)
     waits = view.clock == "lockstep"

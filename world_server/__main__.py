@@ -7,7 +7,6 @@ from pathlib import Path
 
 import msgspec
 
-from protocol.messages import Outcome
 from protocol.scenario import Scenario
 from protocol.shell import leave, serve_until_done
 from world_server.process import WorldProcess
@@ -24,10 +23,10 @@ def main() -> int:
         parser.add_argument(flag, action="store_true")
     given = parser.parse_args()
 
-    def serve() -> Outcome:
+    def serve() -> None:
         scenario = msgspec.json.decode((given.folder / "scenario.json").read_bytes(), type=Scenario)
         endpoints = msgspec.json.decode((given.folder / "endpoints.json").read_bytes(), type=tuple[str, ...])
-        return WorldProcess(
+        ended = WorldProcess(
             given.run,
             scenario,
             endpoints,
@@ -36,6 +35,8 @@ def main() -> int:
             history=given.history,
             checkpoints=given.checkpoints,
         ).serve()
+        # For the launcher, should its link have been down when this was told.
+        (given.folder / "outcome.json").write_bytes(msgspec.json.encode(ended))
 
     return serve_until_done(serve, leash=given.leash, folder=given.folder)
 

@@ -13,7 +13,7 @@ from math import gcd
 
 from protocol import keys
 from protocol.bus import Asked, Bus, BusEvent, Delivery, Lost, Seen
-from protocol.messages import Drive, Linked, Progress
+from protocol.messages import Drive, Linked, Progress, Stopped
 from protocol.shell import settle_memory
 from world_server.absences import Absences
 from world_server.checkpoints import Checkpoints
@@ -34,6 +34,7 @@ class LockstepWorld:
     session: RecoverableSession
     telemetry: Telemetry | None
     progress: Callable[[Progress], None]
+    pass_on: Callable[[Stopped], None]  # to the robots
     returns: Returns
     kept: Checkpoints | None
     start: float  # when the run began, s
@@ -83,25 +84,44 @@ class LockstepWorld:
 
     def _take(self, event: BusEvent) -> bool:
         """Take what is not a drive; whether all who take part have answered by it."""
-        session, world = self.session, self.session.world
+        session = self.session
         if isinstance(event, Delivery):
             if isinstance(event.message, Linked) and keys.robot_of(event.key) == event.message.robot:
                 session.take_linked(event.message)
+            elif isinstance(event.message, Stopped):
+                return self._take_stopped(event.message)
         elif isinstance(event, Lost):
             lost = keys.robot_of(event.name)
-            if lost is not None:
-                if lost in world.live:
-                    self._absences.lost(lost, time.perf_counter(), world.t)
-                return session.lose(lost)
+            return lost is not None and self._lose(lost)
         elif isinstance(event, Seen):
             seen = keys.robot_of(event.name)
-            if seen is not None and seen in session.awaited:
-                session.call(seen)
-            elif seen is not None:
-                session.come(seen)
+            if seen is not None:
+                self._see(seen)
         else:
             self.answer(event)
         return False
+
+    def _lose(self, robot: int) -> bool:
+        session, world = self.session, self.session.world
+        if robot in world.live:
+            self._absences.lost(robot, time.perf_counter(), world.t)
+        return session.lose(robot)
+
+    def _see(self, robot: int) -> None:
+        if robot in self.session.awaited:
+            self.session.call(robot)
+        else:
+            self.session.come(robot)
+
+    def _take_stopped(self, order: Stopped) -> bool:
+        """A robot's process stands still or goes on, as the launcher sees, long before its links fall silent for good."""
+        self.pass_on(order)
+        if not order.stopped:
+            self._see(order.robot)
+            return False
+        if order.robot in self.session.world.live:
+            self.returns.stopped(order.robot, self.session.world.tick)
+        return self._lose(order.robot)
 
     def _step(self) -> None:
         session, world = self.session, self.session.world

@@ -17,7 +17,7 @@ from protocol import keys
 from protocol.bus import Asked, Bus, Delivery, Lost, Seen
 from protocol.errors import SwarmFailure
 from protocol.history.file import Histories, HistoryFolder
-from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Report
+from protocol.messages import Answer, Ask, Drive, Halt, Join, Linked, Outcome, Report, Stopped
 from protocol.scenario import Scenario, lease_ms, scenario_digest
 from protocol.scenario.faults import Crash, Hang
 from protocol.scenario.place import place_of
@@ -90,6 +90,7 @@ class WorldProcess:
         halt = bus.publisher(keys.HALT, reliable=True)
         truth, field = (bus.publisher(key, reliable=False) for key in (keys.TRUTH, keys.FIELD))
         progress = bus.publisher(keys.PROGRESS, reliable=False)
+        pass_on = bus.publisher(keys.STOPPED, reliable=True)
         result = bus.publisher(keys.OUTCOME, reliable=True)
 
         # The robots link up among themselves while the plume is warmed up here.
@@ -119,9 +120,9 @@ class WorldProcess:
         start = time.perf_counter() - (saved[0].wall_s if saved is not None else 0.0)
         try:
             if isinstance(session, RealtimeWorldSession):
-                RealtimeWorld(bus, session, telemetry, progress, self._answer_late, self.launcher).run()
+                RealtimeWorld(bus, session, telemetry, progress, pass_on, self._answer_late, self.launcher).run()
             else:
-                LockstepWorld(bus, session, telemetry, progress, returns, kept, start, self._answer_late).run()
+                LockstepWorld(bus, session, telemetry, progress, pass_on, returns, kept, start, self._answer_late).run()
         except Stop:
             session.end(INTERRUPTED)
         wall_s = time.perf_counter() - start
@@ -140,6 +141,8 @@ class WorldProcess:
             bus.subscribe(keys.robot(i, keys.DRIVE), Drive)
             bus.subscribe(keys.robot(i, keys.REPORT), Report)
             bus.subscribe(keys.robot(i, keys.LINKED), Linked)
+        if self.launcher:
+            bus.subscribe(keys.STOPPED, Stopped)
         bus.serve(keys.SCENARIO, Ask)
         bus.serve("robot/*/join", Join)
 

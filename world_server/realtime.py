@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from protocol import keys
 from protocol.bus import Asked, Bus, BusEvent, Delivery, Lost, Seen
-from protocol.messages import Drive, Progress
+from protocol.messages import Drive, Progress, Stopped
 from protocol.scenario.faults import Crash, Hang
 from protocol.shell import settle_memory
 from world_server.faults.slow import Slowness
@@ -35,6 +35,7 @@ class RealtimeWorld:
     session: RealtimeWorldSession
     telemetry: Telemetry | None
     progress: Callable[[Progress], None]
+    pass_on: Callable[[Stopped], None]  # to the robots
     answer: Callable[[Asked], None]  # to a robot that joins late
     launcher: bool  # there is one, to make robots crash and hang
 
@@ -92,6 +93,12 @@ class RealtimeWorld:
                     self.session.take_drive(message)
                 else:
                     self.bus.counters.refused += 1
+            elif isinstance(message, Stopped):
+                self.pass_on(message)
+                if message.stopped:
+                    self.session.lose(message.robot)
+                else:
+                    self.session.see(message.robot)
         elif isinstance(event, Lost):
             if (lost := keys.robot_of(event.name)) is not None:
                 self.session.lose(lost)

@@ -42,6 +42,10 @@ class Returns:
             elif order.action == KILL:
                 self._stopped.pop(order.robot, None)
 
+    def stopped(self, robot: int, tick: int) -> None:
+        """A robot's process was found to stand still, unplanned."""
+        self._stopped.setdefault(robot, (time.monotonic(), tick))
+
     def hold(self, session: WorldSession) -> bool:
         """Whether the world is not to step yet, for the links of a robot that is stopped have not ended."""
         if not self._stopped:

@@ -20,7 +20,7 @@ class Injector:
 
     def __init__(self, children: Children) -> None:
         self._children = children
-        self._stopped: set[str] = set()
+        self.stopped: set[str] = set()  # members that it has stopped
 
     def do(self, order: Inject) -> None:
         """Stop, continue or kill a robot's process."""
@@ -32,18 +32,18 @@ class Injector:
             process = psutil.Process(child.process.pid)
             if order.action == "stop":
                 process.suspend()
-                self._stopped.add(name)
+                self.stopped.add(name)
             elif order.action == "continue":
                 process.resume()
-                self._stopped.discard(name)
+                self.stopped.discard(name)
             elif order.action == "kill":
                 process.kill()
-                self._stopped.discard(name)
+                self.stopped.discard(name)
 
     def end(self) -> None:
         """The run is over: a process that hangs to the end cannot leave by itself."""
-        for name in self._stopped:
+        for name in self.stopped:
             child = self._children.members[name]
             if child.status is None:
                 child.process.kill()
-        self._stopped.clear()
+        self.stopped.clear()

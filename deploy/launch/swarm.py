@@ -17,6 +17,7 @@ import msgspec
 
 from deploy.launch.children import Children
 from deploy.launch.injector import Injector
+from deploy.launch.standstill import Standstill
 from deploy.launch.supervisor import Supervisor
 from deploy.launch.watcher import Watcher
 from protocol import keys
@@ -24,7 +25,7 @@ from protocol.bus import Bus, Delivery, Lost
 from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
 from protocol.messages import Event, Inject, Outcome, Progress, Truth
-from protocol.scenario import Scenario
+from protocol.scenario import Scenario, lease_ms
 from protocol.scenario.place import place_of
 from protocol.zenoh_bus import ZenohBus, token_of
 
@@ -101,7 +102,8 @@ class SwarmRun:
             else:
                 children.start(name, "robot_agent", [*robots[name], "--rejoin"])
 
-        bus = ZenohBus(self.run, "launcher", token_of(self.run), listen=(), connect=(endpoints[0],))
+        lease = lease_ms(scenario.network, n, scenario.clock)
+        bus = ZenohBus(self.run, "launcher", token_of(self.run), listen=(), connect=(endpoints[0],), lease_ms=lease)
         try:
             bus.subscribe(keys.PROGRESS, Progress)
             bus.subscribe(keys.EVENTS, Event)
@@ -130,6 +132,9 @@ class SwarmRun:
         begun = False
         silent_since: float | None = None  # when the world's liveliness was lost, without its process having ended
         injector = Injector(children)
+        # In real time the world finds out of itself that a robot hangs as planned; in lock-step it knows.
+        planned = injector.stopped if self.scenario.clock == "lockstep" else ()
+        standstill = Standstill(children, bus.publisher(keys.STOPPED, reliable=True), planned)
         tick, t = 0, 0.0
         supervisor = Supervisor(
             self.scenario, children, again, lambda robot, text: watcher.event(Event(tick, t, robot, text))
@@ -155,6 +160,8 @@ class SwarmRun:
                     self.truth(message)
             if begun and (event is None or not isinstance(event, Delivery) or isinstance(event.message, Event | Inject)):
                 supervisor.look(time.monotonic())
+            if begun:
+                standstill.look(time.monotonic())
             if isinstance(event, Lost) and event.name == keys.WORLD:
                 silent_since = time.monotonic()
             elif event is not None and not isinstance(event, Lost):
@@ -162,8 +169,21 @@ class SwarmRun:
             if silent_since is not None and time.monotonic() - silent_since > self.scenario.network.return_timeout:
                 silent_since = None
                 self._end_hung_world(children, restarted=begun and supervisor.keeps_world)
-            if (event is None or isinstance(event, Lost)) and not (begun and supervisor.keeps_world):
-                self._look_after(children, begun)
+            if event is None or isinstance(event, Lost):
+                if (outcome := self._left_behind(children)) is not None:
+                    injector.end()
+                    return outcome
+                if not (begun and supervisor.keeps_world):
+                    self._look_after(children, begun)
+
+    def _left_behind(self, children: Children) -> Outcome | None:
+        """What a world that has ended well wrote down, for whom the link to it was down when it told the outcome."""
+        if children.members[keys.WORLD].status != 0:
+            return None
+        try:
+            return msgspec.json.decode((children.folder / "outcome.json").read_bytes(), type=Outcome)
+        except FileNotFoundError:
+            return None
 
     def _end_hung_world(self, children: Children, *, restarted: bool) -> None:
         """The world's process is there and says nothing: end it, so that the supervisor starts it again, or the run."""

@@ -127,6 +127,9 @@ class RobotScenario(Table, frozen=True):
     faults: tuple[OwnFault, ...]  # what it acts out itself: how it lies, how its clock is wrong
 
 
+LEASE_PER_ROBOT = 40  # ms
+
+
 def robots_per_column(scenario: Scenario) -> int:
     """How many robots stand above each other at the start before a further column is begun."""
     start = scenario.start
@@ -134,11 +137,11 @@ def robots_per_column(scenario: Scenario) -> int:
 
 
 def lease_ms(network: s.Network, robots: int, clock: str) -> int:
-    """After how long a silent link is dead, ms: `network.lease_ms`, and longer for more than ten robots, which share a
-    machine's processors and would otherwise lose each other while they start. In real time who is lost comes back."""
+    """After how long a silent link is dead, ms: `network.lease_ms`, and longer for a large swarm, which shares a machine's
+    processors and would otherwise lose each other while it starts. In real time who is lost comes back."""
     if clock == "realtime":
         return network.lease_ms
-    return max(network.lease_ms, network.lease_ms * robots // 10)
+    return max(network.lease_ms, LEASE_PER_ROBOT * robots)
 
 
 def linked_to(graph: tuple[Edge, ...], i: int) -> tuple[int, ...]:

@@ -185,7 +185,7 @@ class Network(Table, frozen=True):
     transport: Literal["auto", "unix", "tcp"] = "auto"
     port: Annotated[int, Meta(ge=0, le=65000)] = 0  # first TCP port; 0: free ones
     endpoints: tuple[str, ...] = ()  # world's first, then each robot's; empty: made by the launcher
-    lease_ms: Annotated[int, Meta(ge=100, le=60000)] = 400  # a silent link is dead after this
+    lease_ms: Annotated[int, Meta(ge=100, le=60000)] = 2000  # a silent link is dead after this
     join_timeout: Positive = 30.0  # wall-clock s for the swarm to link up
     return_timeout: Positive = 10.0  # wall-clock s that the world waits for a robot that is due back from a hang
 

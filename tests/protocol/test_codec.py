@@ -188,7 +188,7 @@ def test_the_bytes_of_schema_version_1_stay_what_they_are() -> None:
     assert CODEC.encode(Drive(3, 7, 0.25, -0.5)).hex() == "4f7301022cad79ee950307cb3fd0000000000000cbbfe0000000000000c0"
     assert CODEC.encode(Answer(True, "µ")).hex() == "4f73010d9879591e92c3a2c2b5"
     names = "Reading Shared Drive Report Halt Belief Truth Field Event Progress Outcome Ask Join Answer Resume Linked Inject"
-    names += " BeliefMap"
+    names += " BeliefMap Stopped"
     assert " ".join(cls.__name__ for cls in KINDS) == names
 
 
