@@ -20,6 +20,7 @@ from typing import BinaryIO, NoReturn
 from protocol.errors import OdourswarmError
 
 EXIT_OK, EXIT_BAD_INPUT, EXIT_FAILED = 0, 2, 3
+STDIN = Path("-")
 
 
 _launcher_gone = threading.Event()
@@ -42,6 +43,17 @@ def stop_on_signals(*, leash: bool) -> None:
         threading.Thread(target=_watch, args=(sys.stdin.buffer,), daemon=True, name="leash").start()
 
 
+def handed_over(place: Path | None) -> bytes | None:
+    """What the launcher hands over: the text of file `place`, or for "-" the first line of standard input, which is the
+    leash from then on: so it reaches a process on another host, which has no file of ours. None: there is nothing.
+
+    To be called before the leash is watched.
+    """
+    if place is None:
+        return None
+    return sys.stdin.buffer.readline() if place == STDIN else place.read_bytes()
+
+
 def clean_up_after_launcher(folder: Path) -> None:
     """Remove the run's folder if the launcher, whose business that is, is gone.
 
@@ -57,8 +69,8 @@ def settle_memory() -> None:
     gc.freeze()
 
 
-def serve_until_done(serve: Callable[[], object], *, leash: bool, folder: Path) -> int:
-    """Run a process of a run that the launcher started; its exit status.
+def serve_until_done(serve: Callable[[], object], *, leash: bool, folder: Path | None) -> int:
+    """Run a process of a run that the launcher started; its exit status. `folder`: the run's, if it has one here.
 
     What failed is one sentence on standard error, where the launcher reads it.
     """
@@ -71,7 +83,8 @@ def serve_until_done(serve: Callable[[], object], *, leash: bool, folder: Path) 
     except Stop:
         return EXIT_OK
     finally:
-        clean_up_after_launcher(folder)
+        if folder is not None:
+            clean_up_after_launcher(folder)
     return EXIT_OK
 
 

@@ -13,6 +13,7 @@ from typer import Argument, Option
 
 from deploy.cli.advice import advice
 from deploy.cli.options import INTERRUPTED, checkpoint_folder, complain, prepare_history, read_scenario
+from deploy.hosts.seats import Seats, read_seats
 from protocol.errors import ScenarioError, SwarmFailure
 from protocol.messages import Outcome
 from protocol.scenario import Scenario
@@ -54,6 +55,9 @@ def run(
     checkpoint: Annotated[
         Path | None, Option("--checkpoint", metavar="DIR", help="Where the checkpoints are kept while the run goes on.")
     ] = None,
+    hosts: Annotated[
+        Path | None, Option("--hosts", metavar="FILE.toml", help="Which process runs on which host, over TCP.")
+    ] = None,
     json: Annotated[bool, Option("--json", help="One JSON object on stdout and nothing else.")] = False,
 ) -> None:
     """Let a swarm search for the source, and say whether it found it."""
@@ -71,6 +75,7 @@ def run(
         if bus == "memory":
             _no_processes(restart, checkpoint_every)
         checkpoint_folder(checkpoint, scenario)
+        seats = _seats(hosts, scenario, bus, checkpoint)
     except ScenarioError as error:
         complain(error)
         raise typer.Exit(EXIT_BAD_INPUT) from None
@@ -79,7 +84,7 @@ def run(
     signal.signal(signal.SIGTERM, _terminate)
     name = f"run-{secrets.token_hex(4)}"
     try:
-        outcome = _execute(name, scenario, bus, record, view, history, checkpoint, quiet=json)
+        outcome = _execute(name, scenario, bus, record, view, history, checkpoint, seats, quiet=json)
     except SwarmFailure as error:
         complain(error)
         raise typer.Exit(EXIT_FAILED) from None
@@ -98,6 +103,7 @@ def _execute(
     view: bool,
     history: Path | None,
     checkpoint: Path | None,
+    seats: Seats | None,
     *,
     quiet: bool,
 ) -> Outcome:
@@ -110,7 +116,7 @@ def _execute(
             return run_watched(name, scenario, display, record, view=view, history=history)
         from deploy.launch.swarm import SwarmRun
 
-        return SwarmRun(name, scenario, record, view, history, checkpoint=checkpoint).execute(display)
+        return SwarmRun(name, scenario, record, view, history, checkpoint=checkpoint, seats=seats).execute(display)
 
 
 def _print(outcome: Outcome, scenario: Scenario, record: Path | None, *, json: bool) -> None:
@@ -145,6 +151,18 @@ def _no_processes(restart: str | None, checkpoint_every: float | None) -> None:
                 f'{flag} is {given}, and --bus is "memory": one process has no others to start again; leave {flag} out, or'
                 " --bus zenoh."
             )
+
+
+def _seats(file: Path | None, scenario: Scenario, bus: str, checkpoint: Path | None) -> Seats | None:
+    if file is None:
+        return None
+    if bus == "memory":
+        raise ScenarioError(f'--hosts is {file}, and --bus is "memory"; one process runs on one host: --bus zenoh.')
+    if scenario.network.endpoints:
+        raise ScenarioError(f"--hosts is {file}, and network.endpoints is given, too; leave one of them out.")
+    if scenario.supervision.checkpoint_every and checkpoint is None:
+        raise ScenarioError(f"--hosts is {file}, and checkpoints are due; add --checkpoint DIR, on the world's host.")
+    return read_seats(file, scenario.robots)
 
 
 def _writable(record: Path | None) -> None:

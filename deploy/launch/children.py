@@ -12,10 +12,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 POLL = 0.01  # s
+PIPE = 1 << 16  # bytes that a pipe takes before anybody reads
 
 
 @dataclass(slots=True)
@@ -25,6 +27,7 @@ class Child:
     name: str
     process: subprocess.Popen[bytes]
     log: Path
+    python: str = sys.executable  # the interpreter that it is, once what it was started through has given way
 
     @property
     def status(self) -> int | None:
@@ -47,19 +50,38 @@ class Children:
     folder: Path
     members: dict[str, Child] = field(default_factory=dict)
 
-    def start(self, name: str, module: str, arguments: Sequence[str]) -> Child:
-        """Start `python -m module arguments` as member `name`."""
+    def start(
+        self,
+        name: str,
+        module: str,
+        arguments: Sequence[str],
+        *,
+        through: Sequence[str] = (),
+        python: str = sys.executable,
+        handed: bytes = b"",
+    ) -> Child:
+        """Start `through python -m module arguments` as member `name`.
+
+        Args:
+            through: what the command begins with, such as `ssh lab-2`; standard input has to pass through it.
+            handed: a line for its standard input, which is its leash from then on.
+        """
         if (before := self.members.get(name)) is not None and before.process.stdin is not None:
             before.process.stdin.close()  # it has ended; this one takes its place
         log = self.folder / f"{name.replace('/', '-')}.err"
         with log.open("wb") as stderr:
             process = subprocess.Popen(
-                [sys.executable, "-m", module, *arguments, "--leash"],
+                [*through, python, "-m", module, *arguments, "--leash"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
+                pipesize=len(handed) + 1 if len(handed) >= PIPE else -1,  # so that handing over does not wait
             )
-        child = self.members[name] = Child(name, process, log)
+        child = self.members[name] = Child(name, process, log, python)
+        if handed and process.stdin is not None:
+            with suppress(BrokenPipeError):  # it has ended already; why is asked elsewhere
+                process.stdin.write(handed + b"\n")
+                process.stdin.flush()
         return child
 
     def failed(self, names: Iterable[str] | None = None) -> list[Child]:

@@ -12,7 +12,10 @@ import psutil
 
 from deploy.launch.children import Children
 from protocol import keys
+from protocol.errors import SwarmFailure
 from protocol.messages import Inject
+from protocol.scenario import Scenario
+from protocol.scenario.faults import Crash, Hang
 
 
 class Injector:
@@ -21,6 +24,24 @@ class Injector:
     def __init__(self, children: Children) -> None:
         self._children = children
         self.stopped: set[str] = set()  # members that it has stopped
+
+    def refuse_beyond_reach(self, scenario: Scenario) -> None:
+        """Refuse faults of processes that are not this machine's.
+
+        To be called when all robots have joined: what a robot was started through has given way to it by then, as `ip
+        netns exec` does, or never will, as `ssh`, whose end or halt is not that of the robot.
+
+        Raises: SwarmFailure.
+        """
+        for robot in sorted({fault.robot for fault in scenario.faults if isinstance(fault, Crash | Hang)}):
+            child = self._children.members[keys.robot_name(robot)]
+            with suppress(psutil.NoSuchProcess):
+                line = psutil.Process(child.process.pid).cmdline()
+                if line and line[0] != child.python:
+                    raise SwarmFailure(
+                        f"robot {robot} is to crash or hang as the faults say, and its process is beyond the reach of this "
+                        f"launcher, behind {line[0]}; leave the fault out, or seat the robot on this machine."
+                    )
 
     def do(self, order: Inject) -> None:
         """Stop, continue or kill a robot's process."""

@@ -13,10 +13,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
-
+from deploy.hosts.seats import Seats
 from deploy.launch.children import Children
 from deploy.launch.injector import Injector
+from deploy.launch.members import Members
 from deploy.launch.standstill import Standstill
 from deploy.launch.supervisor import Supervisor
 from deploy.launch.watcher import Watcher
@@ -26,7 +26,6 @@ from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
 from protocol.messages import Event, Inject, Outcome, Progress, Truth
 from protocol.scenario import Scenario, lease_ms
-from protocol.scenario.place import place_of
 from protocol.zenoh_bus import ZenohBus, token_of
 
 POLL = 0.1  # s between two looks at the processes
@@ -48,6 +47,7 @@ class SwarmRun:
     truth: Callable[[Truth], None] | None = None  # told of the robots as they are, as often as `recording` says; best effort
     children: Children | None = None  # while and after it runs
     checkpoint: Path | None = None  # folder for the world's checkpoints; none: the run's own
+    seats: Seats | None = None  # who runs on which host; none: everybody on this machine
 
     def execute(self, watcher: Watcher) -> Outcome:
         """Start everything, watch it, clean up.
@@ -71,38 +71,19 @@ class SwarmRun:
 
     def _execute(self, folder: Path, children: Children, watcher: Watcher) -> Outcome:
         scenario = self.scenario
-        n = scenario.robots
-        endpoints = scenario.network.endpoints or make_endpoints(scenario, folder)
-        (folder / "scenario.json").write_bytes(msgspec.json.encode(scenario))
-        (folder / "endpoints.json").write_bytes(msgspec.json.encode(endpoints))
-        recorded = self.record is not None or self.view
-        history = ["--history", str(self.history)] if self.history is not None else []
-        world = ["--run", self.run, "--folder", str(folder), "--launcher", *(["--recorder"] if recorded else []), *history]
-        if scenario.supervision.checkpoint_every:
-            world += ["--checkpoints", str(self.checkpoint or folder)]
-        children.start(keys.WORLD, "world_server", world)
-        robots = {}
-        for i in range(n):
-            place = folder / f"place-{i}.json"
-            place.write_bytes(msgspec.json.encode(place_of(scenario, i, endpoints)))
-            robots[keys.robot_name(i)] = ["--run", self.run, "--place", str(place), *history]
-        for name, arguments in robots.items():
-            children.start(name, "robot_agent", arguments)
-        if recorded:
-            output = ["--record", str(self.record)] if self.record is not None else []
-            children.start(
-                "recorder",
-                "deploy.recorder",
-                ["--run", self.run, "--folder", str(folder), *output, *(["--view"] if self.view else [])],
-            )
+        seated = self.seats.endpoints if self.seats is not None else ()
+        endpoints = seated or scenario.network.endpoints or make_endpoints(scenario, folder)
+        members = Members(
+            self.run, scenario, endpoints, folder, children,
+            self.seats, self.history, self.checkpoint, self.record, self.view,
+        )  # fmt: skip
+        recorded = members.recorded
+        members.start_all()
 
         def again(name: str) -> None:
-            if name == keys.WORLD:
-                children.start(name, "world_server", world)
-            else:
-                children.start(name, "robot_agent", [*robots[name], "--rejoin"])
+            members.start(name, again=True)
 
-        lease = lease_ms(scenario.network, n, scenario.clock)
+        lease = lease_ms(scenario.network, scenario.robots, scenario.clock)
         bus = ZenohBus(self.run, "launcher", token_of(self.run), listen=(), connect=(endpoints[0],), lease_ms=lease)
         try:
             bus.subscribe(keys.PROGRESS, Progress)
@@ -136,6 +117,7 @@ class SwarmRun:
         planned = injector.stopped if self.scenario.clock == "lockstep" else ()
         standstill = Standstill(children, bus.publisher(keys.STOPPED, reliable=True), planned)
         tick, t = 0, 0.0
+        started = time.monotonic()
         supervisor = Supervisor(
             self.scenario, children, again, lambda robot, text: watcher.event(Event(tick, t, robot, text))
         )
@@ -151,6 +133,8 @@ class SwarmRun:
                         supervisor.planned(message)
                     injector.do(message)
                 if isinstance(message, Progress):
+                    if not begun:
+                        injector.refuse_beyond_reach(self.scenario)
                     begun = True
                     tick, t = message.tick, message.t
                     watcher.progress(message)
@@ -169,6 +153,8 @@ class SwarmRun:
             if silent_since is not None and time.monotonic() - silent_since > self.scenario.network.return_timeout:
                 silent_since = None
                 self._end_hung_world(children, restarted=begun and supervisor.keeps_world)
+            if event is None and not begun:
+                self._refuse_unreachable(bus, time.monotonic() - started)
             if event is None or isinstance(event, Lost):
                 if (outcome := self._left_behind(children)) is not None:
                     injector.end()
@@ -184,6 +170,15 @@ class SwarmRun:
             return msgspec.json.decode((children.folder / "outcome.json").read_bytes(), type=Outcome)
         except FileNotFoundError:
             return None
+
+    def _refuse_unreachable(self, bus: Bus, waited: float) -> None:
+        """A world on another host may be out of reach while its process there, and the command to it, live."""
+        patience = self.scenario.network.join_timeout
+        if self.seats is not None and waited > patience and keys.WORLD not in bus.links():
+            raise SwarmFailure(
+                f"no world answers at {self.seats.endpoints[0]} within {patience:g} s; look whether its command gets "
+                f"through to that host, and whether this one reaches the address."
+            )
 
     def _end_hung_world(self, children: Children, *, restarted: bool) -> None:
         """The world's process is there and says nothing: end it, so that the supervisor starts it again, or the run."""

@@ -1,4 +1,4 @@
-"""A robot's place in the swarm: what it may know, and where it finds the world and its neighbours."""
+"""A member's place in the swarm: what it may know, and where it finds the others."""
 
 from __future__ import annotations
 
@@ -12,6 +12,13 @@ class RobotPlace(Table, frozen=True):
     scenario: RobotScenario
     world: str  # endpoint of the world
     robots: dict[int, str]  # endpoints of this robot and of those it is linked to
+
+
+class WorldPlace(Table, frozen=True):
+    """All that a world process is given."""
+
+    scenario: Scenario
+    endpoints: tuple[str, ...]  # the world's, then each robot's
 
 
 def place_of(scenario: Scenario, i: int, endpoints: tuple[str, ...]) -> RobotPlace:
