@@ -44,6 +44,8 @@ class Reading(Message, frozen=True, array_like=True, gc=False):
     hears: Annotated[tuple[tuple[int, int], ...], RECORDS] = ()  # lock-step: the (neighbour, tick) states to wait for
     wind_past: Annotated[tuple[tuple[Number, Number], ...], RECORDS] = ()  # tick 0: wind before the start, oldest first
     slip: Number = 0.0  # real time: by how much the world's schedule has moved on the wall clock, s
+    near: Annotated[tuple[tuple[Number, Number], ...], RECORDS] = ()  # hands within `sensors.proximity`, nearest first:
+    # how far ahead of the own hand and how far to its left, m. Whose they are is not sensed
 
 
 class Shared(Message, frozen=True, array_like=True, gc=False):

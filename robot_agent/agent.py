@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from protocol.messages import Belief, BeliefMap, Drive, Reading, Shared
 from protocol.scenario import RobotScenario
 from robot_agent.algorithms import algorithm
+from robot_agent.control.guard import Guard
 from robot_agent.declaration import Declaration
 from robot_agent.group import Group
 from robot_agent.hand import Own, wheel_torques
@@ -20,6 +21,7 @@ from robot_agent.map_telemetry import PERIOD, map_message
 from robot_agent.neighbours import Neighbours
 from robot_agent.observer import Observer
 from robot_agent.planning.search import CrosswindSearch
+from robot_agent.proximity import Proximity
 from robot_agent.rejoin import Rejoin, at_rest
 from robot_agent.validation import Validation
 
@@ -42,6 +44,8 @@ class Agent:
         self._rejoin = Rejoin(scenario)
         self.validation = Validation(scenario, self._controller)
         self._declaration = Declaration(scenario)
+        self._proximity = Proximity(scenario) if scenario.proximity > 0.0 else None
+        self.guard = Guard(scenario) if self._proximity is not None and scenario.repulsion.keep > 0.0 else None
         self._near2 = scenario.repulsion.d**2  # silent robots farther than that push and pull nobody, m^2
         self._dt = scenario.timing.tick
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
@@ -74,6 +78,8 @@ class Agent:
         own = self._own = Own(reading, self._s.body, None if before is None else before.tick)
         if before is None:
             self._rejoin.sense(own)
+        if self._proximity is not None:
+            self._proximity.sense(reading)
         if reading.wind_past:
             self._decision.prefill(reading)
         if self.decision_due:
@@ -157,8 +163,12 @@ class Agent:
             self._plan = self._search.plan(own, group)
         x, y = own.x, own.y
         others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
+        if self._proximity is not None:
+            others = self._proximity.see(own, others)
         u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
+        if self.guard is not None and self._proximity is not None:
+            tau_left, tau_right = self.guard.permit(tau_left, tau_right, own, self._proximity.bodies)
         drive = Drive(self.robot, own.tick, tau_left, tau_right, self._declaration.made)
         if self.observer is not None:
             self.observer.acted(arrived, neighbours.fresh, self._decision, self._plan.mode, drive, begun=self._begun)

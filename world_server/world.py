@@ -13,7 +13,7 @@ from hashlib import blake2b
 import numpy as np
 
 from protocol.messages import Drive, Reading
-from protocol.scenario import Scenario
+from protocol.scenario import Scenario, proximity
 from world_server import sensors
 from world_server.bodies import Bodies
 from world_server.faults.actuator import ActuatorFaults
@@ -22,6 +22,7 @@ from world_server.faults.sensor import SensorFaults
 from world_server.field import Field
 from world_server.links import Links
 from world_server.observer import Observer
+from world_server.proximity import near
 from world_server.radio import Radio
 from world_server.snapshot import VERSION, WorldState, decode, encode, pack, unpack
 from world_server.start import start_poses
@@ -53,6 +54,7 @@ class World:
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self.ticks_per_sample = max(1, round(scenario.sensors.period / scenario.timing.tick))
         self._noisy = sensors.noisy(scenario.sensors)
+        self._proximity = proximity(scenario)
         self._sensor_faults = SensorFaults(scenario)
         self._actuator_faults = ActuatorFaults(scenario)
         # The digest is a chain, for a hash under way cannot be saved: whenever the plume is sampled, the digest of
@@ -186,14 +188,17 @@ class World:
         self.links.advance(k, self.bodies.hands)
         live, hears, (wind_x, wind_y), ppt = self.live, self.radio.hears, self._wind, self.concentration
         history: tuple[tuple[float, float], ...] = ()
+        around = near(self.bodies.robots, self._proximity) if self._proximity else ()
         readings = []
         for i, b in enumerate(self.bodies.robots):
             if i in live:
                 if k == 0:
                     history = tuple((float(u), float(v)) for u, v in self._wind_past[:, i])
+                seen_by = around[i] if around else ()
                 exact = Reading(
-                    i, k, t, b.x, b.y, b.theta, b.nu, b.omega, wind_x[i], wind_y[i], ppt[i], hears(i, k, live), history
-                )
+                    i, k, t, b.x, b.y, b.theta, b.nu, b.omega, wind_x[i], wind_y[i], ppt[i], hears(i, k, live), history,
+                    0.0, seen_by,
+                )  # fmt: skip
                 seen = sensors.observe(exact, s.sensors, s.seed) if self._noisy else exact
                 readings.append(self._sensor_faults.observe(seen) if self._sensor_faults.any else seen)
         if self.observer is not None:

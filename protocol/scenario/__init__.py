@@ -5,9 +5,11 @@ from protocol.scenario.scenario import (
     Scenario,
     lease_ms,
     linked_to,
+    proximity,
     robot_view,
     scenario_digest,
 )
 from protocol.scenario.stage import Edge, Stage
 
-__all__ = ["Edge", "RobotScenario", "Scenario", "Stage", "lease_ms", "linked_to", "robot_view", "scenario_digest"]
+__all__ = ["Edge", "RobotScenario", "Scenario", "Stage", "lease_ms", "linked_to", "proximity", "robot_view",
+           "scenario_digest"]  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 LITERAL: dict[str, object] = {
     "plume.growth": "printed",
     "sensors.wind_history": 0.0,
+    "sensors.proximity": 0.0,
     "decision.gate": "printed",
     "decision.noise": "printed",
     "decision.process_noise": 0.0,

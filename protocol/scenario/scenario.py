@@ -90,6 +90,7 @@ class RobotScenario(Table, frozen=True):
     period: float  # after which the stages begin anew, s; 0: never
     linked: tuple[int, ...]  # robots that it has a link with, in either direction
     max_degree: float  # largest row sum at any time: bounds the step of the consensus laws
+    proximity: float  # how far it senses others, m; 0: not at all
     complete: bool  # everyone hears everyone at any time: positions need no relaying
     arena: s.Arena
     body: s.Body
@@ -136,6 +137,14 @@ def robots_per_column(scenario: Scenario) -> int:
     return max(1, int((scenario.arena.y_max - start.y) // start.spacing) + 1)
 
 
+def proximity(scenario: Scenario) -> float:
+    """How far robots sense each other, m: what `sensors` say, or else what the algorithm asks for in its own table."""
+    if scenario.sensors.proximity is not None:
+        return scenario.sensors.proximity
+    own = getattr(scenario, scenario.algorithm.replace("-", "_"), None)
+    return float(getattr(own, "proximity", 0.0))
+
+
 def lease_ms(network: s.Network, robots: int, clock: str) -> int:
     """After how long a silent link is dead, ms: `network.lease_ms`, and longer for a large swarm, which shares a machine's
     processors and would otherwise lose each other while it starts. In real time who is lost comes back."""
@@ -166,6 +175,7 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
         period=scenario.graph_options.period,
         linked=linked_to(scenario.graph, i),
         max_degree=max(_largest_row_sum(graph) for graph in graphs),
+        proximity=proximity(scenario),
         complete=all(len(graph) == everyone for graph in graphs) and not any(stage.range > 0.0 for stage in stages),
         faults=tuple(f for f in scenario.faults if isinstance(f, OwnFault) and f.robot == i),
         **{name: getattr(scenario, name) for name in both},

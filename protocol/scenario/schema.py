@@ -78,6 +78,8 @@ def words(kind: inspect.Type, value: object = None) -> str:
             text = "text"
         case inspect.LiteralType():
             text = one_of([str(each) for each in kind.values])
+        case inspect.UnionType():  # of a kind and None, which is said by leaving it out
+            text = next(words(each, value) for each in kind.types if not isinstance(each, inspect.NoneType))
         case inspect.TupleType():
             text = "a list [" + ", ".join(words(each) for each in kind.item_types) + "]"
         case inspect.VarTupleType():

@@ -69,6 +69,8 @@ class Sensors(Table, frozen=True):
     heading_noise: NonNegative = 0.0  # rad
     concentration_noise: NonNegative = 0.0  # relative standard deviation
     wind_history: Annotated[float, Meta(ge=0, le=600)] = 100.0  # wind recorded before the start, s at 1 Hz
+    proximity: Annotated[float, Meta(ge=0, le=100)] | None = None  # other robots are sensed so far, m; 0: they are not,
+    # as in the thesis; not given: as the algorithm's own table says (`plume_map.proximity`), and 0 without such a value
 
 
 class Body(Table, frozen=True):

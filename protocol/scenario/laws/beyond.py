@@ -46,3 +46,4 @@ class PlumeMap(Table, frozen=True):
     pull: Positive = 0.5  # to the own place in the line, 1/s
     gain: Positive = 2.0  # of the velocity error, 1/s
     clearance: NonNegative = 1.5  # within this (3.35) acts, m
+    proximity: NonNegative = 3.0  # other robots are sensed so far, when `sensors.proximity` is not given, m

@@ -22,4 +22,5 @@ class Repulsion(Table, frozen=True):
     d0: Positive = 6.6  # m
     gap: NonNegative = 0.8  # the barrier lets no pair of robots closer, m; 0: (3.35) alone
     brake: Positive = 0.3  # how hard the barrier counts on each robot to brake, m/s^2
+    keep: NonNegative = 0.65  # m: who senses the others brakes in time to stay so far away; 0: it does not (the guard)
     form: Literal["sum", "switch"] = "sum"  # added to (3.34), or instead of it within d0 as printed
