@@ -20,7 +20,7 @@ class PlumeMap(Table, frozen=True):
     cell: Annotated[float, Meta(ge=0.1, le=20)] = 1.0  # m
     reach: Positive = 0.9  # r: half width of a plume that is smelt, m
     upwind: NonNegative = 0.65  # how far upwind of a source it is smelt, the mean over places beside it, m
-    blur: Positive = 0.7  # sigma_0 at lag 0, m
+    blur: Positive = 0.6  # sigma_0: the half width's and the way's deviation at lag 0 together, m
     spread: NonNegative = 0.02  # least D, m^2/s
     meander: NonNegative = 1.0  # k_D: D = spread + k_D 5 s var(wind)
     detect: OpenFraction = 0.9  # p_m: smelt when the plume passes
@@ -37,6 +37,7 @@ class PlumeMap(Table, frozen=True):
     shuttle_min: Positive = 2.0  # half a leg along the wind about the estimate, m
     shuttle_max: Positive = 8.0
     cast_max: Positive = 15.0  # half a leg across the wind when lost, m
+    sway: NonNegative = 0.7  # half of the way sideways from leg to leg when the source is nearly known, m
     turn_after: Positive = 15.0  # a leg takes no longer, s
     margin: NonNegative = 1.0  # goals stay so far inside the arena, m
     # formation
@@ -45,4 +46,5 @@ class PlumeMap(Table, frozen=True):
     spacing_max: Positive = 6.0  # m
     pull: Positive = 0.5  # to the own place in the line, 1/s
     gain: Positive = 2.0  # of the velocity error, 1/s
+    settle: Positive = 0.3  # no faster to the own place while the group is under way in the plume, m/s
     clearance: NonNegative = 1.5  # within this (3.35) acts, m
