@@ -26,6 +26,8 @@ WIDTH = int(REACH * STEPS)
 LADDER = 1.06  # ratio of neighbouring sigmas
 EDGE = 0.03  # m: the least s
 RUNGS = 60  # the widest is sigma_0 1.06^59 = 31 sigma_0
+LEVELS = 8
+SHARP = 16  # rungs: 1.06^16 = 2.5 sigma_0
 
 Row = tuple[int, ...]
 
@@ -40,6 +42,11 @@ class Likelihood:
         sigmas = [p.blur * LADDER**n for n in range(RUNGS)]
         self.hits = [self._row(sigma, p, True) for sigma in sigmas]
         self.misses = [self._row(sigma, p, False) for sigma in sigmas]
+        # Where the way begins: P times (level + 1/2) / LEVELS. There the way is still sharp.
+        self.begin_hits, self.begin_misses = (
+            [[self._row(sigma, p, hit, (level + 0.5) / LEVELS) for sigma in sigmas[:SHARP]] for level in range(LEVELS)]
+            for hit in (True, False)
+        )
         self.sigmas = sigmas
         # Looked up rather than computed: a logarithm for every line of cells would cost more than the cells.
         self.fine = 16.0 / self._blur2
@@ -55,7 +62,7 @@ class Likelihood:
         return min(max(n, 0), RUNGS - 1)
 
     @staticmethod
-    def _row(sigma: float, p: PlumeMap, hit: bool) -> Row:
+    def _row(sigma: float, p: PlumeMap, hit: bool, share: float = 1.0) -> Row:
         """Entries for z = -REACH ... REACH; entry n is for (n - WIDTH) / STEPS <= z < (n + 1 - WIDTH) / STEPS.
 
         One more at the end is for a z that rounding has carried there.
@@ -64,7 +71,7 @@ class Likelihood:
         s = sqrt(2.0 * max(sigma**2 - p.reach**2 / 3.0, EDGE**2))
         for n in range(2 * WIDTH + 1):
             z = (n + 0.5 - WIDTH) / STEPS
-            P = p.detect * 0.5 * (erf((p.reach - z * sigma) / s) + erf((p.reach + z * sigma) / s))
+            P = share * p.detect * 0.5 * (erf((p.reach - z * sigma) / s) + erf((p.reach + z * sigma) / s))
             gain = p.hit * log(1.0 + (1.0 - p.false) * P / p.false) if hit else p.miss * log(1.0 - P)
             row.append(round(ONE * gain))
         return tuple(row)

@@ -15,11 +15,11 @@ from math import ceil, hypot, log
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.plume.events import Event
-from robot_agent.plume.likelihood import ONE, REACH, STEPS, WIDTH, Likelihood
+from robot_agent.plume.likelihood import LEVELS, ONE, REACH, SHARP, STEPS, WIDTH, Likelihood
 
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
-SOFT = 0.7  # m: half of the length on which an event's weight rises from 0 to 1 where its way begins
+SOFT = 0.45  # m: half of the length on which P rises from nothing where an event's way begins
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
 
 
@@ -101,6 +101,7 @@ class EventMap:
         rows, sigmas, rungs, fine, exact = (
             tables.hits if hit else tables.misses, tables.sigmas, tables.rungs, tables.fine, len(tables.rungs)
         )  # fmt: skip
+        edge = tables.begin_hits if hit else tables.begin_misses
         narrow = cosine * cell  # of a sigma across the lines, in their direction
         soft = 2.0 * SOFT * cosine
         # All that changes evenly from line to line, from line `first` on.
@@ -123,9 +124,9 @@ class EventMap:
                 stop = nb
             if start < stop:
                 if begins:
-                    share = weight if hit else weight / (1.0 + (q1 + (part + (i - first) * by_part) * later) / tau)
-                    w = round(share * min(1.0, abs(i - p1) * cell / soft)) << shift
-                elif not hit:
+                    level = int(abs(i - p1) * cell / soft * LEVELS)
+                    row = edge[level][n if n < SHARP else SHARP - 1] if level < LEVELS else rows[n]
+                if not hit:
                     w = round(weight / (1.0 + (q1 + (part + (i - first) * by_part) * later) / tau)) << shift
                 z = (start - middle) * dz + WIDTH
                 for at in range(corner + start * stride_b, corner + stop * stride_b, stride_b):
