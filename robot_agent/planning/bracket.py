@@ -2,7 +2,7 @@
 
 Every robot plans for the whole line and takes its own place in it. With c the middle of the group, m and S the mean and the
 covariance of the posterior, w the direction of the wind, n across it, s_w and s_n the deviations along them:
-    goal      m; within A + 2 m of it  m -+ A w,  A = 1.5 s_w within [2, 8] m, the other way when it is reached;
+    goal      m; within A + 2 m of it  m -+ A w,  A = 1.5 s_w within [1.5, 8] m, the other way when it is reached;
               when nobody has smelt anything for `lost_after` also  +- 1.5 s_n n, changing sides every second leg;
               when s_w < 2 m, +- `sway` n instead: the sides of the plume are passed, too, not only its beginning;
               while somebody smells and s_w > 2 m always upwind
