@@ -151,7 +151,8 @@ class Agent:
             if self.decision_due or self._plan is None:
                 around = Around(neighbours.fresh, others, neighbours.numbers)
                 self._decision.decide(own, group, self._detected, around)
-                self._declaration.judge(own.t, self._decision.h, self._decision.certainty())
+                late = self._rejoin.joined_at is not None
+                self._declaration.judge(own.t, self._decision.h, self._decision.certainty(), late)
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._planner.brief(own, self._decision, group, around)
                 self._plan = self._planner.plan(own, self._decision.h, lost)

@@ -5,7 +5,8 @@ Rules, for robot i at every decision; not of the thesis:
    robot and that robot's time; the newest of each robot is passed on from neighbour to neighbour.
 2. Declare. i declares when its posterior has been narrower than `radius` for `hold` seconds while its estimate stayed within
    `tolerance`, and the newest vote of every robot that it heard of within `window` is as narrow and within `tolerance` too.
-   A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joins is asked once it votes.
+   A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joined late has not seen what
+   the others saw: it votes once it is sure itself, and holds nobody up before.
 3. Adopt. A declaration (when, by whom, where) is passed on. Of two the earlier one wins, then the one by the lower number,
    so that all robots that hear of each other tell the same place; what is heard twice, late or in another order changes
    nothing. On a graph that is connected over time, directed or not, that takes as many exchanges as it is wide.
@@ -68,16 +69,21 @@ class Declaration:
             if state.declared is not None:
                 self._adopt(state.declared)
 
-    def judge(self, t: float, estimate: Point, radius: float | None) -> None:
+    def judge(self, t: float, estimate: Point, radius: float | None, late: bool = False) -> None:
         """At every decision: vote, and declare when all agree.
 
         Args:
             estimate: where this robot holds the source to be, m.
             radius: of its posterior there, m; None: it has none.
+            late: this robot joined a swarm that was on its way.
         """
         if not self._on:
             return
         p, (x, y) = self._p, estimate
+        if late and (radius is None or radius > p.radius):
+            self._votes.pop(self._me, None)
+            self._since, self._judged_at = inf, t
+            return
         self._votes[self._me] = Vote(t, x, y, UNSURE if radius is None else radius, t)
         paused = t - self._judged_at > p.window
         self._judged_at = t

@@ -2,12 +2,14 @@
 
 Every robot plans for the whole line and takes its own place in it. With c the middle of the group, m and S the mean and the
 covariance of the posterior, w the direction of the wind, n across it, s_w and s_n the deviations along them:
-    goal      m; within A + 2 m of it  m -+ A w,  A = 1.5 s_w within [2, 8] m, the other way when it is reached;
+    goal      m; within A + 2 m of it  m -+ A w,  A = 1.5 s_w within [1.5, 8] m, the other way when it is reached;
               when nobody has smelt anything for `lost_after` also  +- 1.5 s_n n, changing sides every second leg;
+              when s_w < 2 m, +- `sway` n instead: the sides of the plume are passed, too, not only its beginning;
               while somebody smells and s_w > 2 m always upwind
     way       c moves to the goal at `speed`, slower on the last 1.5 m
     line      robot i at c + (rank_i - (N - 1) / 2) d n,  d = 2 s_n / (N - 1) within [2, 6] m; rank_i: its place across the
-              wind among those that it knows of, so that ways do not cross.
+              wind among those that it knows of, so that ways do not cross. While somebody smells the line grows no wider,
+            and under way nobody is faster than `settle` towards the own place: what a robot does sideways it lacks upwind.
 A line that is 2 m apart leaves no place further than 1 m from a robot that passes.
 """
 
@@ -58,7 +60,10 @@ class BracketPlanner(Planner):
         distance = hypot(dx, dy)
         speed = self._p.speed * min(1.0, distance / SLOW)
         v_c = (speed * dx / distance, speed * dy / distance) if distance > 0.0 else (0.0, 0.0)
-        slot = self._slot(places, middle, wind, across)
+        contact = quiet <= self._p.contact
+        slot = self._slot(places, middle, wind, across, contact)
+        if contact and distance > SLOW:
+            slot = self._settling((own.x, own.y), slot)
         self._planned_at = own.t
         mode = LOST if quiet > self._p.lost_after else TRACE
         self._next = Plan(mode, slot, p_dot=v_c, v_c=v_c, centre=decision.h)
@@ -83,7 +88,9 @@ class BracketPlanner(Planner):
             self._upwind, self._leg_since = True, t
         A = min(max(SPREAD * along, p.shuttle_min), p.shuttle_max)
         if hypot(gx - middle[0], gy - middle[1]) < A + NEAR:
-            B = min(max(SPREAD * across, 1.0), p.cast_max) * self._side if quiet > p.lost_after else 0.0
+            B = self._side * (
+                min(max(SPREAD * across, 1.0), p.cast_max) if quiet > p.lost_after else p.sway if along < SHARP else 0.0
+            )
             a = -A if self._upwind else A
             gx, gy = gx + a * wind[0] - B * wind[1], gy + a * wind[1] + B * wind[0]
             if hypot(gx - middle[0], gy - middle[1]) < THERE or t - self._leg_since > p.turn_after:
@@ -96,10 +103,21 @@ class BracketPlanner(Planner):
             min(max(gy, arena.y_min + m), arena.y_max - m),
         )
 
-    def _slot(self, places: list[tuple[float, float, int]], middle: Point, wind: Point, across: float) -> Point:
+    def _settling(self, here: Point, slot: Point) -> Point:
+        """The place, drawn near, so that the pull towards it is no faster than `settle`."""
+        reach = self._p.settle / self._p.pull
+        dx, dy = slot[0] - here[0], slot[1] - here[1]
+        off = hypot(dx, dy)
+        return (here[0] + dx * reach / off, here[1] + dy * reach / off) if off > reach else slot
+
+    def _slot(
+        self, places: list[tuple[float, float, int]], middle: Point, wind: Point, across: float, contact: bool
+    ) -> Point:
         p, n = self._p, len(places)
         apart = min(max(2.0 * across / max(n - 1, 1), p.spacing_min), p.spacing_max)
         order = sorted((-x * wind[1] + y * wind[0], j) for x, y, j in places)
+        if contact and n > 1:
+            apart = max(p.spacing_min, min(apart, (order[-1][0] - order[0][0]) / (n - 1)))
         rank = next(r for r, (_, j) in enumerate(order) if j == self._me)
         off = (rank - 0.5 * (n - 1)) * apart
         return middle[0] - off * wind[1], middle[1] + off * wind[0]

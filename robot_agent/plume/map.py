@@ -15,11 +15,11 @@ from math import ceil, hypot, log
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.plume.events import Event
-from robot_agent.plume.likelihood import ONE, REACH, STEPS, WIDTH, Likelihood
+from robot_agent.plume.likelihood import LEVELS, ONE, REACH, SHARP, STEPS, WIDTH, Likelihood
 
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
-SOFT = 0.7  # m: half of the length on which an event's weight rises from 0 to 1 where its way begins
+SOFT = 0.45  # m: half of the length on which P rises from nothing where an event's way begins
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
 
 
@@ -87,39 +87,51 @@ class EventMap:
         else:
             (q1, b1, a1), (q2, b2, a2) = one, two
             a0, b0, na, nb, stride_a, stride_b = self.y0, self.x0, self.ny, self.nx, 1, self.ny
-        run, rise = a2 - a1, b2 - b1
-        if run == 0.0:
-            return
-        cosine = max(FLAT, abs(run) / hypot(run, rise))
         p1, p2 = (a1 - a0) / cell - 0.5, (a2 - a0) / cell - 0.5
         first, last = (ceil(p1), ceil(p2)) if p1 < p2 else (ceil(p2), ceil(p1))
-        first, last = max(0, first), min(na, last)
-        hit, tau, rung, sigmas = event.hit, tables.tau, tables.rung, tables.sigmas
-        rows = tables.hits if hit else tables.misses
+        if first < 0:
+            first = 0
+        if last > na:
+            last = na
+        run, rise, later = a2 - a1, b2 - b1, q2 - q1
+        if first >= last or run == 0.0:
+            return
+        cosine = max(FLAT, abs(run) / hypot(run, rise))
+        hit, tau = event.hit, tables.tau
+        rows, sigmas, rungs, fine, exact = (
+            tables.hits if hit else tables.misses, tables.sigmas, tables.rungs, tables.fine, len(tables.rungs)
+        )  # fmt: skip
+        edge = tables.begin_hits if hit else tables.begin_misses
         narrow = cosine * cell  # of a sigma across the lines, in their direction
+        soft = 2.0 * SOFT * cosine
         # All that changes evenly from line to line, from line `first` on.
         part, by_part = (first - p1) / (p2 - p1), 1.0 / (p2 - p1)
-        variance, by_variance = self._p.blur**2 + event.D * (q1 + part * (q2 - q1)), event.D * by_part * (q2 - q1)
+        variance, by_variance = self._p.blur**2 + event.D * (q1 + part * later), event.D * by_part * later
         middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
+        rung = -1
+        w = round(weight) << shift
+        corner = first * stride_a
         for i in range(first, last):
-            n = rung(variance)
-            sigma = sigmas[n]
-            half = REACH * sigma / narrow
+            n = int(variance * fine)
+            n = rungs[n] if n < exact else tables.rung(variance)
+            if n != rung:  # it stays for some lines
+                rung, sigma, row = n, sigmas[n], rows[n]
+                half, dz = REACH * sigma / narrow, narrow / sigma * STEPS
             start, stop = ceil(middle - half), ceil(middle + half)
             if start < 0:
                 start = 0
             if stop > nb:
                 stop = nb
             if start < stop:
-                w = weight if hit else weight / (1.0 + (q1 + (part + (i - first) * by_part) * (q2 - q1)) / tau)
                 if begins:
-                    w *= min(1.0, abs(i - p1) * cell / (2.0 * SOFT * cosine))
-                w = round(w) << shift
-                row, dz = rows[n], narrow / sigma * STEPS
+                    level = int(abs(i - p1) * cell / soft * LEVELS)
+                    row = edge[level][n if n < SHARP else SHARP - 1] if level < LEVELS else rows[n]
+                if not hit:
+                    w = round(weight / (1.0 + (q1 + (part + (i - first) * by_part) * later) / tau)) << shift
                 z = (start - middle) * dz + WIDTH
-                begin = i * stride_a + start * stride_b
-                for at in range(begin, begin + (stop - start) * stride_b, stride_b):
+                for at in range(corner + start * stride_b, corner + stop * stride_b, stride_b):
                     M[at] += w * row[int(z)]
                     z += dz
+            corner += stride_a
             variance += by_variance
             middle += by_middle

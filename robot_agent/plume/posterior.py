@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import exp, sqrt
-from operator import mul
 
 from robot_agent.interfaces import Posterior
 from robot_agent.plume.map import EventMap
@@ -55,40 +54,72 @@ def _coarse(chart: EventMap, xs: range, ys: range, scale: float) -> tuple[Moment
     tops = list(map(max, rows))
     top = max(tops)
     floor = top - int(CUT / scale)
+    columns = tuple(map(float, ys))
     sums: list[tuple[int, float, float, float]] = []
+    blank: dict[int, tuple[float, float, float]] = {}  # rows that no event has touched yet are all the same
     count = 0
     for i, row, highest in zip(xs, rows, tops, strict=True):
-        if highest > floor:
-            weights = [exp((m - top) * scale) if m > floor else 0.0 for m in row]
-            count += len(weights) - weights.count(0.0)
-            moment = list(map(mul, weights, ys))
-            sums.append((i, sum(weights), sum(moment), sum(map(mul, moment, ys))))
+        if highest <= floor:
+            continue
+        if row[0] == highest and row.count(highest) == len(row):
+            if highest not in blank:
+                blank[highest] = _row(row, columns, top, floor, scale)[:3]
+            sums.append((i, *blank[highest]))
+            count += len(row)
+        else:
+            w, wy, wyy, n = _row(row, columns, top, floor, scale)
+            sums.append((i, w, wy, wyy))
+            count += n
     return _moments(sums), count
+
+
+def _row(
+    row: Sequence[int], columns: Sequence[float], top: int, floor: int, scale: float
+) -> tuple[float, float, float, int]:
+    """Sums of w, w y, w y^2 of a row, and how many cells counted."""
+    w = wy = wyy = 0.0
+    count = 0
+    for m, y in zip(row, columns, strict=True):
+        if m > floor:
+            weight = exp((m - top) * scale)
+            w += weight
+            weight *= y
+            wy += weight
+            wyy += weight * y
+            count += 1
+    return w, wy, wyy, count
 
 
 def _fine(chart: EventMap, rough: Moments, scale: float) -> Moments:
     """In parts of cells, around the rough mean."""
     M, nx, ny = chart.M, chart.nx, chart.ny
     reach = 4.0 * SHARP
-    cells = [(i, j) for i in _about(rough[0], reach, nx) for j in _about(rough[1], reach, ny)]
-    top = max(M[i * ny + j] for i, j in cells)
+    xs, ys = _about(rough[0], reach, nx), _about(rough[1], reach, ny)
+    rows = [M[i * ny + ys.start : i * ny + ys.stop] for i in xs]
+    tops = list(map(max, rows))
+    top = max(tops)
     floor = top - int(CUT / scale)
     sums: list[tuple[float, float, float, float]] = []
-    for i, j in cells:
-        n = i * ny + j
-        if M[n] <= floor:
+    for i, row, highest in zip(xs, rows, tops, strict=True):
+        if highest <= floor:
             continue
-        here = (M[n] - top) * scale
-        left, right = _slopes(M, n, ny if 0 < i < nx - 1 else 0, scale)
-        low, high = _slopes(M, n, 1 if 0 < j < ny - 1 else 0, scale)
-        # exp(a + b) = exp(a) exp(b): 4 + 4 exponentials a cell
-        down = [(j + v, exp(low * v + high * v * v)) for v in PARTS]
-        w0 = sum(w for _, w in down)
-        w1 = sum(w * y for y, w in down)
-        w2 = sum(w * y * y for y, w in down)
-        for u in PARTS:
-            w = exp(here + left * u + right * u * u)
-            sums.append((i + u, w * w0, w * w1, w * w2))
+        for j, m in zip(ys, row, strict=True):
+            if m <= floor:
+                continue
+            n = i * ny + j
+            here = (m - top) * scale
+            left, right = _slopes(M, n, ny if 0 < i < nx - 1 else 0, scale)
+            low, high = _slopes(M, n, 1 if 0 < j < ny - 1 else 0, scale)
+            # exp(a + b) = exp(a) exp(b): 4 + 4 exponentials a cell
+            w0 = w1 = w2 = 0.0
+            for v in PARTS:
+                w, y = exp(low * v + high * v * v), j + v
+                w0 += w
+                w1 += w * y
+                w2 += w * y * y
+            for u in PARTS:
+                w = exp(here + left * u + right * u * u)
+                sums.append((i + u, w * w0, w * w1, w * w2))
     return _moments(sums)
 
 

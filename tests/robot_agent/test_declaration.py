@@ -222,6 +222,18 @@ def test_a_robot_that_joins_late_adopts_what_was_declared() -> None:
     assert made is not None
 
 
+def test_a_robot_that_joined_late_holds_nobody_up_until_it_is_sure_itself() -> None:
+    late, old = group(2)
+    late.judge(0.0, (90.0, 0.0), 5.0, late=True)
+    assert late.votes(0, 0.0) == ()
+    for t in range(1, 9):
+        late.judge(float(t), (90.0, 0.0), 0.1, late=True)
+    assert [v[0] for v in late.votes(10 * PERIOD, 8.0)] == [0]
+    old.hear(8.0, [vote(0, 8.0, (90.0, 0.0))])
+    judged(old, range(8, 16))
+    assert old.made is None  # it is sure of another place now, and that counts
+
+
 def test_clocks_that_differ_do_no_harm() -> None:
     who = group(2)[0]
     for t in range(60):

@@ -19,8 +19,8 @@ class PlumeMap(Table, frozen=True):
     # map
     cell: Annotated[float, Meta(ge=0.1, le=20)] = 1.0  # m
     reach: Positive = 0.9  # r: half width of a plume that is smelt, m
-    upwind: NonNegative = 0.65  # how far upwind of a source it is smelt, the mean over places beside it, m
-    blur: Positive = 0.7  # sigma_0 at lag 0, m
+    upwind: NonNegative = 0.42  # how far upwind of a source it is smelt, the mean over places beside it, m
+    blur: Positive = 0.6  # sigma_0: the half width's and the way's deviation at lag 0 together, m
     spread: NonNegative = 0.02  # least D, m^2/s
     meander: NonNegative = 1.0  # k_D: D = spread + k_D 5 s var(wind)
     detect: OpenFraction = 0.9  # p_m: smelt when the plume passes
@@ -34,9 +34,10 @@ class PlumeMap(Table, frozen=True):
     lost_after: Positive = 10.0  # without a hit for so long the group casts, s
     contact: NonNegative = 3.0  # a hit within so long keeps the group on its upwind leg, s
     steady: Positive = 20.0  # the direction of the wind is a mean over so long, s
-    shuttle_min: Positive = 2.0  # half a leg along the wind about the estimate, m
+    shuttle_min: Positive = 1.5  # half a leg along the wind about the estimate, m
     shuttle_max: Positive = 8.0
     cast_max: Positive = 15.0  # half a leg across the wind when lost, m
+    sway: NonNegative = 0.7  # half of the way sideways from leg to leg when the source is nearly known, m
     turn_after: Positive = 15.0  # a leg takes no longer, s
     margin: NonNegative = 1.0  # goals stay so far inside the arena, m
     # formation
@@ -45,5 +46,6 @@ class PlumeMap(Table, frozen=True):
     spacing_max: Positive = 6.0  # m
     pull: Positive = 0.5  # to the own place in the line, 1/s
     gain: Positive = 2.0  # of the velocity error, 1/s
+    settle: Positive = 0.3  # no faster to the own place while the group is under way in the plume, m/s
     clearance: NonNegative = 1.5  # within this (3.35) acts, m
     proximity: NonNegative = 3.0  # other robots are sensed so far, when `sensors.proximity` is not given, m
