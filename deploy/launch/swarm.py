@@ -13,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from deploy.hosts.seats import Seats
 from deploy.launch.children import Children
 from deploy.launch.injector import Injector
