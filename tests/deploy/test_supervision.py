@@ -46,7 +46,8 @@ def test_killed_robot_is_started_again_and_rejoins_the_running_swarm():
 
 
 def test_run_ends_as_usual_with_a_robot_that_was_started_again():
-    scenario = near_the_plume(**SLOW, seed=2, max_time=60.0, supervision__restart="crashed")
+    # Long: on a busy machine the others do a thousand ticks and more while the new process starts.
+    scenario = near_the_plume(topology="ring", seed=2, start__y=-45.0, max_time=400.0, supervision__restart="crashed")
     with Swarm(scenario) as swarm:
         swarm.under_way()
         kill(swarm, "robot/0")
@@ -69,18 +70,18 @@ def test_all_robots_killed_at_once_come_back():
     assert swarm.outcome.ended == "interrupted"
 
 
-@pytest.mark.parametrize(("kills", "max_time"), [(1, 30.0), (3, 60.0)])
-def test_killed_world_comes_back_from_its_checkpoint_with_the_digest_of_an_undisturbed_run(kills, max_time):
-    scenario = near_the_plume(**SLOW, max_time=max_time, supervision__checkpoint_every=2.0)
+def test_killed_world_comes_back_from_its_checkpoint_with_the_digest_of_an_undisturbed_run():
+    """From its first life, from one that was a second life itself, and from a third."""
+    scenario = near_the_plume(**SLOW, max_time=100.0, supervision__checkpoint_every=2.0)
     with Swarm(scenario) as swarm:
-        for _ in range(kills):
+        for _ in range(3):
             seen = swarm.under_way().ticks
             wait_for(lambda seen=seen: swarm.ticks > seen + 70, "some ticks more")
             first = kill(swarm, "world")
             wait_for(lambda first=first: swarm.pid("world") != first, "the world is started again")
         swarm.finish()
     assert swarm.error is None
-    assert sum("the world is back" in text for text in swarm.events) == kills
+    assert sum("the world is back" in text for text in swarm.events) == 3
     assert swarm.outcome.faults == ()
     expected = run_in_memory(scenario)
     assert swarm.outcome.digest == expected.digest
@@ -165,7 +166,8 @@ def test_world_that_ends_too_often_ends_the_run_with_a_sentence():
 
 def test_launcher_killed_during_a_restart_leaves_nobody_behind(folder):  # noqa: F811
     process = odourswarm(
-        "run", "--max-time", "5000", "--set", "search.after=stay", "--checkpoint-every", "5", "--restart", "always"
+        "run", "--robots", "3", "--max-time", "5000", "--set", "search.after=stay", "--checkpoint-every", "5",
+        "--restart", "always",
     )
     family: dict[int, psutil.Process] = {}
 
@@ -174,13 +176,13 @@ def test_launcher_killed_during_a_restart_leaves_nobody_behind(folder):  # noqa:
             family[child.pid] = child
         return list(family.values())
 
-    wait_for(lambda: len(members()) == 6 and list(folder.glob("odour-*/*.checkpoint")), "the run has begun")
+    wait_for(lambda: len(members()) == 4 and list(folder.glob("odour-*/*.checkpoint")), "the run has begun")
     wait_for(lambda: any(path.stat().st_size > 2000 for path in folder.glob("odour-*/*.journal")), "the run is under way")
     robots = [p for p in members() if "robot_agent" in p.cmdline()]
     world = next(p for p in members() if "world_server" in p.cmdline())
-    for victim in (robots[0], robots[3], world):
+    for victim in (robots[0], robots[2], world):
         victim.kill()
-    wait_for(lambda: len(members()) > 6, "somebody is started again")
+    wait_for(lambda: len(members()) > 4, "somebody is started again")
     members()
     process.kill()
     process.communicate(timeout=60)
