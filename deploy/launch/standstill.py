@@ -3,7 +3,8 @@
 Rules: it looks at the processes and at nothing they say. A link that is silent proves nothing on a busy machine, so links
 are given time (`network.lease_ms`); that a process is stopped the system knows at once, and the launcher tells the world.
 A process is stopped when it was so at two looks, EVERY apart: one that is stopped and let go together with the launcher,
-as by Ctrl-Z and `fg`, is not. Time comes in as an argument.
+as by Ctrl-Z and `fg`, is not. What was seen before the launcher itself was held up does not count.
+Time comes in as an argument.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from protocol import keys
 from protocol.messages import Stopped
 
 EVERY = 0.08  # s between two looks
+HELD_UP = 0.5  # s without a look: the launcher was stopped, or starved
 
 
 @dataclass(slots=True)
@@ -36,6 +38,8 @@ class Standstill:
         """Tell who has stopped and who goes on."""
         if now < self._next:
             return
+        if now > self._next + HELD_UP:
+            self._still.clear()
         self._next = now + EVERY
         for name, child in self.children.members.items():
             robot = keys.robot_of(name)

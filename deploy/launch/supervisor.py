@@ -30,7 +30,7 @@ class Supervisor:
     _policies: dict[str, Policy] = field(default_factory=dict)
     _due: dict[str, float] = field(default_factory=dict)  # when who is started again
     _seen: set[int] = field(default_factory=set)  # processes whose end has been dealt with
-    _planned: dict[str, bool] = field(default_factory=dict)  # ended by a fault; whether it says to start again
+    _planned: dict[str, float | None] = field(default_factory=dict)  # ended by a fault; started again after so many s
 
     @property
     def keeps_world(self) -> bool:
@@ -39,15 +39,15 @@ class Supervisor:
 
     def planned(self, order: Inject) -> None:
         """A planned fault ends a robot's process now."""
-        dt = self.scenario.timing.tick
-        restart = any(
-            isinstance(fault, Crash)
-            and fault.robot == order.robot
-            and fault.restart > 0.0
-            and first_tick(fault.at, dt) == order.tick
-            for fault in self.scenario.faults
-        )
-        self._planned[keys.robot_name(order.robot)] = restart
+        scenario = self.scenario
+        pause = None
+        for fault in scenario.faults:
+            if not isinstance(fault, Crash) or fault.robot != order.robot or fault.restart == 0.0:
+                continue
+            if first_tick(fault.at, scenario.timing.tick) == order.tick:
+                # In lock-step the new process waits until the world calls it; in real time nobody does.
+                pause = fault.restart / scenario.realtime.speed if scenario.clock == "realtime" else 0.0
+        self._planned[keys.robot_name(order.robot)] = pause
 
     def look(self, now: float) -> None:
         """Deal with who has ended, and start again who is due.
@@ -66,8 +66,8 @@ class Supervisor:
     def _ended(self, name: str, child: Child, status: int, now: float) -> None:
         robot = keys.robot_of(name)
         if name in self._planned and status < 0:
-            if self._planned.pop(name):
-                self._due[name] = now
+            if (pause := self._planned.pop(name)) is not None:
+                self._due[name] = now + pause
             return
         if name == keys.WORLD and self.keeps_world:
             mode = Mode.CRASHED

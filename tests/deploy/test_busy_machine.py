@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from deploy.launch.children import Child, Children
-from deploy.launch.standstill import EVERY, Standstill
+from deploy.launch.standstill import EVERY, HELD_UP, Standstill
 from deploy.memory_run import run_in_memory
 from protocol.messages import Stopped
 from protocol.scenario.load import load_scenario
@@ -88,6 +88,14 @@ def test_a_process_that_is_stopped_is_told_of_at_the_second_look_and_again_when_
         standstill.look(4.0 * EVERY)
         standstill.look(5.0 * EVERY)
         assert told == [Stopped(1, True), Stopped(1, False)]
+        process.send_signal(signal.SIGSTOP)
+        wait_for(lambda: seen.status() == psutil.STATUS_STOPPED, "it is stopped again")
+        standstill.look(6.0 * EVERY)
+        held_up = 6.0 * EVERY + 2.0 * HELD_UP
+        standstill.look(held_up)  # the launcher has just come back itself: this is a first look
+        assert len(told) == 2
+        standstill.look(held_up + 1.0 * EVERY)
+        assert told[2:] == [Stopped(1, True)]
         process.kill()
 
 

@@ -150,6 +150,38 @@ def test_planned_faults_happen_to_the_processes():
     assert swarm.fates(2)[-2:] == ["robot 2 lost", "robot 2 is back"]
 
 
+def comes_back_and_drives(swarm: Swarm, robot: int, kill: Callable[[], None] = lambda: None) -> None:
+    """Robot `robot` is lost, a new process takes its place, and its body moves again."""
+    first = swarm.at(0.5).process(f"robot/{robot}")
+    kill()
+    wait_for(lambda: bool(swarm.told(f"robot {robot} is back")), "the robot is back")
+    assert not first.is_running()
+    assert swarm.process(f"robot/{robot}").pid != first.pid
+    wait_for(lambda: abs(swarm.speeds[robot]) > 0.05, "the new process drives")
+
+
+def test_a_killed_robot_is_started_again_and_drives():
+    with Swarm(realtime__speed=5.0, max_time=1000.0, plume__release_rate=0.0, supervision__restart="always") as swarm:
+        comes_back_and_drives(swarm, 1, lambda: os.kill(swarm.process("robot/1").pid, signal.SIGKILL))
+        swarm.process("world").terminate()
+    assert swarm.error is None
+    assert swarm.outcome.ended == "interrupted"
+    assert swarm.fates(1)[:2] == ["robot 1 lost", "robot 1 is back"]
+    assert swarm.told("robot 1 ended with signal 9 and is started again")
+
+
+def test_a_robot_that_crashes_as_planned_is_started_again_and_drives():
+    crash = {"kind": "crash", "at": 3.0, "robot": 2, "restart": 15.0}
+    with Swarm(realtime__speed=5.0, max_time=1000.0, plume__release_rate=0.0, faults=[crash]) as swarm:
+        comes_back_and_drives(swarm, 2)
+        swarm.process("world").terminate()
+    assert swarm.error is None
+    assert swarm.fates(2)[-2:] == ["robot 2 lost", "robot 2 is back"]
+    # Not before its time, by the clock of the launcher; the world's may be behind it by what it has given up.
+    lost, back = (swarm.told(f"robot 2 {what}")[-1].t for what in ("lost", "is back"))
+    assert back - lost > 15.0 - 5.0 * swarm.outcome.slip - 1.0
+
+
 def test_killed_world_ends_every_robot():
     with Swarm(max_time=1000.0, plume__release_rate=0.0, realtime__alone=0.5) as swarm:
         robots = [swarm.at(0.5).process(f"robot/{i}") for i in range(3)]
