@@ -34,6 +34,7 @@ from protocol.codec import Codec, Refusal
 from protocol.errors import SwarmFailure
 from protocol.inbox import BIG_FRAME, Inbox
 from protocol.keys import ROOT
+from protocol.linger import let_go, over_tcp
 from protocol.messages import Message
 from protocol.roll import Roll
 from protocol.thread_state import keep_thread_state
@@ -94,6 +95,7 @@ class ZenohBus:
         self._announced = False
         self._closed = False
         self._warned: set[str] = set()
+        self._over_tcp = over_tcp((*listen, *connect))
         identity = session_id(run, token, name)
         self._session = _open(session_settings(identity, listen, connect, lease_ms, lockstep=lockstep), name)
         self._info = self._session.info
@@ -218,11 +220,13 @@ class ZenohBus:
                 self._complain(_ALIVE, f"cannot be announced: {error}")
 
     def _watch_liveliness(self) -> None:
-        note, cut, me = self._roll.note, len(self._prefix + _ALIVE), self.name
+        note, cut, me, tcp = self._roll.note, len(self._prefix + _ALIVE), self.name, self._over_tcp
 
         def on_token(sample: Any) -> None:
             keep_thread_state()
             name = str(sample.key_expr)[cut:]
+            if tcp and sample.kind == zenoh.SampleKind.PUT:  # a link is new
+                let_go()
             if name != me:
                 note(name, sample.kind == zenoh.SampleKind.PUT)
 

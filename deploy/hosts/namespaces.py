@@ -40,6 +40,7 @@ NAMED = Path("/run/netns")  # where `ip netns` keeps the names
 IP_TIMEOUT = 20.0  # s for one `ip`
 LEAVE = 3.0  # s that whoever is left in a namespace may take to leave before it is killed
 POLL = 0.02  # s
+MADE_BY = "# Network namespaces of one machine, made by `python -m deploy.hosts.namespaces {}`."
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,31}")
 
 
@@ -89,7 +90,7 @@ class Network:
 
     def hosts(self) -> str:
         """The file for `odourswarm run --hosts`."""
-        text = f"# Network namespaces of one machine, made by `python -m deploy.hosts.namespaces {self.name}`.\n"
+        text = MADE_BY.format(self.name) + "\n"
         for member in self.members:
             robot = keys.robot_of(member)
             who = "world = true" if robot is None else f"robots = [{robot}]"
@@ -183,10 +184,10 @@ def _checked(given: argparse.Namespace, command: Sequence[str]) -> tuple[Network
     if shutil.which(command[0]) is None:
         raise ScenarioError(f"there is no command {command[0]} here; give one that there is, or none for a shell.")
     file = given.hosts or Path(f"{given.name}.toml")
-    if not given.remove and file.exists():
-        raise ScenarioError(f"{file} is there already; remove it, or choose another with --hosts.")
     if not given.remove and left_over(given.name):
         raise ScenarioError(f"network {given.name} is there already; choose another name, or give --remove first.")
+    if not given.remove and file.exists():
+        raise ScenarioError(f"{file} is there already; remove it, or choose another with --hosts.")
     return Network(given.name, given.robots), file
 
 
@@ -207,6 +208,8 @@ def main() -> int:
         network, file = _checked(given, command)
         if given.remove:
             remove(network.name)
+            if file.is_file() and file.read_text(errors="replace").startswith(MADE_BY.format(network.name)):
+                file.unlink()
             return 0
         stop_on_signals(leash=False)
         signal.signal(signal.SIGINT, signal.default_int_handler)
