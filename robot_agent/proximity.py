@@ -20,6 +20,7 @@ from robot_agent.interfaces import Point
 from robot_agent.neighbours import Placed
 
 ROUGH = 0.01  # m/s: error of a speed from two readings, for wheels that meet their limit within a tick
+STILL = 0.005  # m/s: whose mean speed over a tick was less, stands as far as one can tell
 SAME = 0.1  # m: a place that was told and one that is sensed, so near to each other, are one robot's
 BLUR = 0.3  # m: so far inside the range, who is not sensed is not there
 
@@ -32,6 +33,7 @@ class Sensed(NamedTuple):
     v_ahead: float  # velocity over the ground, along the same axes, m/s
     v_left: float
     fastest: float  # bound on its speed now, m/s
+    stands: bool
 
 
 class Proximity:
@@ -70,10 +72,11 @@ class Proximity:
         ways = [way for q in were if (way := hypot(x - q[0], y - q[1])) <= longest]
         if not ways:
             r = max(hypot(x, y), 1e-9)
-            return Sensed(x, y, -self._top * x / r, -self._top * y / r, self._top)
+            return Sensed(x, y, -self._top * x / r, -self._top * y / r, self._top, False)
         near_x, near_y = min(were, key=lambda q: hypot(x - q[0], y - q[1]))
-        fastest = min(max(ways) / self._dt + self._more, self._top)  # of two that it can have been, the faster
-        return Sensed(x, y, (x - near_x) / self._dt, (y - near_y) / self._dt, fastest)
+        mean = max(ways) / self._dt  # of two that it can have been, the faster
+        vx, vy = (x - near_x) / self._dt, (y - near_y) / self._dt
+        return Sensed(x, y, vx, vy, min(mean + self._more, self._top), mean <= STILL)
 
     def see(self, own: Own, told: Sequence[Placed]) -> list[Placed]:
         """Everybody to keep clear of: who is sensed, and who was `told` of and is out of range.

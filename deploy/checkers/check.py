@@ -11,7 +11,7 @@ A new checker is one new file and one line in `CHECKERS`.
 
 from __future__ import annotations
 
-from deploy.checkers import contraction, covariance, hull
+from deploy.checkers import clearance, contraction, covariance, hull
 from deploy.checkers.conservation import heard_was_sent
 from deploy.checkers.finding import Checker, Finding
 from deploy.checkers.freshness import nothing_stale_used
@@ -36,6 +36,7 @@ CHECKERS = (
     Checker(
         "contraction", "disagreement shrank while connected", contraction.disagreement_shrinks, contraction.not_promised
     ),
+    Checker("clearance", "nobody came too near to another", clearance.stays_clear, clearance.not_promised),
     Checker("stopped", "nobody drove after the safe stop", stays_stopped),
     Checker("verdict", "one verdict, and the truth agrees", one_true_verdict),
 )

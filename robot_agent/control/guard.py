@@ -19,18 +19,20 @@ The next tick's P is part of the way that was looked at. No robot needs to know 
 What keeps it from a standstill: two that stand X apart sense each other's speed only up to an error, so that no order is
 clear at all. Where the line would lie behind the hand, but d - rho >= X' = X - GIVE, it is put at the hand: the robot may
 move away and sideways. The cases above then hold with X' for X (both at the hand: d >= X'), so that X' is what is
-promised: `repulsion.keep` = 0.65 m keeps 0.62 m. Robots that began nearer than that part: as long as the other stands,
-the line lies at the hand.
+promised: `repulsion.keep` = 0.65 m keeps 0.62 m. The line is put there, too, when the other is still nearer and stands, so
+that robots that began too near part. The proof leaves a hole of millimetres there: one that seems to stand may go at
+0.06 m/s, of which 5 mm are the way to a stop; the orders of both point away from the other.
 
 It holds for every tick, body, speed and goal as long as readings come every tick (lock-step), the range is at least
-X + 2 (rho_max + a tick at top speed), 1.6 m here, all but braking bodies have a guard, and brakes are what they are
-said to be. So it does not hold for a robot with a weak wheel (fault `actuator`); in real time a drive that comes late
-lengthens the way by what is driven meanwhile. Errors of position and compass do not matter (robot_agent.proximity).
+`range_needed`, X + 2 (rho_max + a tick at top speed), 1.63 m here, all but braking bodies have a guard, and brakes are
+what they are said to be. So it does not hold for a robot with a weak wheel (fault `actuator`); in real time a drive that
+comes late lengthens the way by what is driven meanwhile. Errors of position and compass do not matter
+(robot_agent.proximity), nor does what anybody says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, cos, hypot, sin
 
 from protocol.scenario import RobotScenario
@@ -41,7 +43,6 @@ from robot_agent.interfaces import Point
 from robot_agent.proximity import Sensed
 
 GIVE = 0.03  # m: X - X'
-STANDS = 0.1  # m/s: a bound on the speed of a body that stands, as far as one can tell
 STEPS = 4  # torques that are tried, per wheel, between none and most
 
 Line = tuple[float, float, float]  # n_x, n_y, b: n . p <= b in the frame of the hand, |n| = 1
@@ -91,7 +92,7 @@ class Guard:
             if b >= self._far:
                 continue
             if b < 0.0:
-                if d - rho < X - GIVE and (d >= X - GIVE or body.fastest > STANDS):
+                if d - rho < X - GIVE and not body.stands:
                     lines.append(None)
                     continue
                 b = 0.0
@@ -107,17 +108,22 @@ class Guard:
 
     def _clear(self, torques: Torques, own: Own, lines: Sequence[Line]) -> bool:
         """Whether the way under `torques` for a tick, and then braking, stays behind all lines."""
-        return all(
-            nx * x + ny * y <= b + 1e-9 for x, y in way(torques, own.nu, own.omega, self._body, self._dt, self._substeps)
-            for nx, ny, b in lines
-        )  # fmt: skip
+        for x, y in way(torques, own.nu, own.omega, self._body, self._dt, self._substeps):
+            for nx, ny, b in lines:
+                if nx * x + ny * y > b + 1e-9:
+                    return False
+        return True
 
 
-def way(torques: Torques, nu: float, omega: float, body: Body, dt: float, substeps: int) -> Sequence[Point]:
+def range_needed(body: Body, dt: float, keep: float) -> float:
+    """How far a robot must sense others, m: at that distance both may still go at top speed for a tick and then stop."""
+    return keep + 2.0 * (Stops(body, dt).longest + fastest_hand(body) * dt)
+
+
+def way(torques: Torques, nu: float, omega: float, body: Body, dt: float, substeps: int) -> Iterator[Point]:
     """Where the hand goes, in its own frame of now: one tick under `torques`, then ticks of braking until it stands, m."""
     L = body.hand
     x, y, theta = -L, 0.0, 0.0
-    points: list[Point] = []
     forward, turning = body.wheel_radius / (2.0 * body.wheel_inertia), body.wheel_radius / (body.axle * body.wheel_inertia)
     while True:
         left, right = limited(*torques, body)
@@ -131,8 +137,8 @@ def way(torques: Torques, nu: float, omega: float, body: Body, dt: float, subste
             y += step * sin(theta + 0.5 * turn)
             theta += turn
             nu, omega = nu_1, omega_1
-        points.append((x + L * cos(theta), y + L * sin(theta)))
+        yield x + L * cos(theta), y + L * sin(theta)
         if abs(nu) + abs(omega) < 1e-9:
-            return points
+            return
         torques = stopping_torques(nu, omega, body, dt)
         substeps = 1  # no limit is met while it brakes

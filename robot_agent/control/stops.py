@@ -41,8 +41,9 @@ class Stops:
         body = self._body
         turning = min(1.0, body.hand * body.max_turn / speed)
         widest = min(0.5 * pi, asin(turning))
+        angles = [widest * k / ANGLES for k in range(ANGLES + 1)]
         # The factor covers what lies between two angles.
-        return 1.01 * max(self._way(speed * cos(p), speed * sin(p)) for p in (widest * k / ANGLES for k in range(ANGLES + 1)))
+        return 1.01 * max(self._way(speed * cos(p), speed * sin(p)) for p in angles)
 
     def _way(self, f: float, g: float) -> float:
         body, a = self._body, self._a

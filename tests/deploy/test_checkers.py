@@ -30,6 +30,13 @@ def bereft() -> History:
     return kept_with_death(near_the_plume(seed=3), 2, 60)
 
 
+@pytest.fixture(scope="module")
+def sensing() -> History:
+    """Robots that sense each other and hear nobody for a second."""
+    parted = [{"kind": "partition", "at": 1.0, "until": 2.0, "groups": [[0, 1], [2, 3, 4]]}]
+    return kept(near_the_plume(seed=3, sensors__proximity=3.0, max_time=4.0, plume__warm_up=20.0, faults=parted))[0]
+
+
 @pytest.mark.parametrize("algorithm", ["cfpso", "dcs-ft", "ftmcs", "ccs-like", "lpso", "surge-cast", "circular"])
 def test_a_true_run_of_any_algorithm_keeps_every_promise(algorithm):
     history, _ = kept(near_the_plume(algorithm=algorithm, plume__warm_up=60.0, max_time=3.0))
@@ -69,9 +76,9 @@ def test_a_true_run_on_every_graph_keeps_every_promise(topology, robots):
     assert broken(history) == {}
 
 
-def test_every_checker_has_facts_to_look_at(searched, found, bereft):
+def test_every_checker_has_facts_to_look_at(searched, found, bereft, sensing):
     facts = {}
-    for history in (searched, found, bereft):
+    for history in (searched, found, bereft, sensing):
         assert broken(history) == {}
         for finding in check_run(history):
             facts[finding.name] = facts.get(finding.name, 0) + finding.facts
@@ -324,3 +331,30 @@ def test_faults_of_the_radio_and_of_processes_break_no_promise(seed):
     assert broken(history) == {}
     assert len(history.lives[1]) == 2
     assert look("stopped", history).facts > 40
+
+
+def test_robots_that_came_too_near_are_seen(sensing):
+    def tamper(history: History) -> None:
+        x, y, theta, nu, omega = history.moved[30].poses[1]
+        poses = list(history.moved[30].poses)
+        poses[4] = (x + 0.5, y, theta, nu, omega)
+        change_moved(history, 30, poses=tuple(poses))
+
+    assert "robots 1 and 4 were 0.500 m apart at tick 30" in look("clearance", tampered(sensing, tamper)).counterexample
+
+
+WEAK = {"kind": "actuator", "robot": 1, "wheel": "left", "strength": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "do not sense each other"),
+        ({"sensors__proximity": 1.0}, "1.63 m are needed"),
+        ({"sensors__proximity": 3.0, "start__spacing": 0.5}, "start nearer"),
+        ({"sensors__proximity": 3.0, "faults": [WEAK]}, "weak"),
+    ],
+)
+def test_a_distance_that_nobody_promised_is_not_asked_for(changes, words):
+    history, _ = kept(near_the_plume(plume__warm_up=5.0, max_time=0.2, **changes))
+    assert words in look("clearance", history).skipped

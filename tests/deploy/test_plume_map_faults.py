@@ -42,6 +42,7 @@ def test_the_place_is_declared_and_nobody_who_is_honest_is_refused(values):
     assert ended.ended == "declared"
     assert not ended.false_declaration
     assert ended.messages["refused"] == 0
+    assert ended.min_pair_distance >= 0.6
     made = {swarm.robots[i].session.agent._declaration.made for i in swarm.session.world.live}
     assert made == {swarm.session.declarations.common}
 

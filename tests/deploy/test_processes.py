@@ -100,9 +100,13 @@ def folder(monkeypatch):
         assert list(Path(name).glob("odour-*")) == []
 
 
-@pytest.mark.parametrize(("algorithm", "topology"), [("cfpso", "ring"), ("dcs", "line"), ("simple", "all")])
+@pytest.mark.parametrize(
+    ("algorithm", "topology"), [("cfpso", "ring"), ("dcs", "line"), ("simple", "all"), ("plume-map", "line")]
+)
 def test_truth_is_the_same_over_zenoh_and_in_memory(algorithm, topology):
-    scenario = near_the_plume(algorithm=algorithm, topology=topology, robots=3, seed=11, max_time=5.0)
+    # So near that robots that sense each other do so.
+    near = {"start__spacing": 1.5} if algorithm == "plume-map" else {}
+    scenario = near_the_plume(algorithm=algorithm, topology=topology, robots=3, seed=11, max_time=5.0, **near)
     with Swarm(scenario) as swarm:
         swarm.finish()
     assert swarm.error is None

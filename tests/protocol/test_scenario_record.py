@@ -48,6 +48,7 @@ def another(path: str) -> Any:
         "drill.centre": (1.0, 2.0),
         "drill.radii": (1.0, 2.0),
         "network.endpoints": ("tcp/127.0.0.1:7447",),
+        "sensors.proximity": 2.5,
         "faults": (Loss(probability=0.3, edges=((0, 1),)), Crash(robot=1, at=3.0)),
     }[path]
 

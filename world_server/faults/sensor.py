@@ -1,7 +1,7 @@
 """Sensors that are stuck, biased, dropped out or noisy.
 
 Rules: acts on what the robot is told, after the sensors' own noise; the truth is not touched. Draws by ("sensor-fault",
-number of the fault, robot, tick).
+number of the fault, robot, tick). Range finders (`Reading.near`) have no faults.
 """
 
 from __future__ import annotations
