@@ -89,6 +89,7 @@ class RobotScenario(Table, frozen=True):
     stages: tuple[RowStage, ...]  # whom it listens to when; empty: to its row always
     period: float  # after which the stages begin anew, s; 0: never
     linked: tuple[int, ...]  # robots that it has a link with, in either direction
+    reaches: tuple[int, ...]  # robots that ever listen to it
     max_degree: float  # largest row sum at any time: bounds the step of the consensus laws
     proximity: float  # how far it senses others, m; 0: not at all
     complete: bool  # everyone hears everyone at any time: positions need no relaying
@@ -174,6 +175,7 @@ def robot_view(scenario: Scenario, i: int) -> RobotScenario:
         stages=tuple(RowStage(stage.at, _row(stage.edges, i)) for stage in stages),
         period=scenario.graph_options.period,
         linked=linked_to(scenario.graph, i),
+        reaches=tuple(sorted(k for k, j, _ in scenario.graph if j == i)),
         max_degree=max(_largest_row_sum(graph) for graph in graphs),
         proximity=proximity(scenario),
         complete=all(len(graph) == everyone for graph in graphs) and not any(stage.range > 0.0 for stage in stages),

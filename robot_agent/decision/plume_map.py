@@ -30,7 +30,7 @@ class PlumeMapDecision(Decision):
         self._step = scenario.timing.decision
         self._ticks = round(scenario.timing.decision / scenario.timing.tick)
         self._past = WindPast(self._p, self._step)
-        self._flood = Flood(scenario.robots, self._p.window, [j for j, _ in scenario.row], scenario.linked)
+        self._flood = Flood(scenario.robots, self._p.window, [j for j, _ in scenario.row], scenario.reaches)
         self.chart = EventMap(scenario.arena, self._p, self._step)
         self._upwind = next((n for n, lag in enumerate(LAGS) if lag >= self._p.steady), len(LAGS) - 1) + 1
         self._latest: dict[int, tuple[int, Event]] = {}  # robot -> its newest event

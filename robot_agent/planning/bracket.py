@@ -15,7 +15,6 @@ A line that is 2 m apart leaves no place further than 1 m from a robot that pass
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import hypot
 
 from protocol.scenario import RobotScenario
@@ -77,7 +76,8 @@ class BracketPlanner(Planner):
         assert self._next is not None, "brief() comes before follow()"
         age = min(own.t - self._planned_at, AHEAD)
         x, y = self._next.target
-        return replace(plan, target=(x + age * plan.p_dot[0], y + age * plan.p_dot[1]))
+        target = (x + age * plan.p_dot[0], y + age * plan.p_dot[1])
+        return Plan(plan.mode, target, plan.p_dot, plan.p_ddot, plan.v_c, plan.centre)
 
     def _goal(
         self, t: float, h: Point, middle: Point, wind: Point, along: float, across: float, quiet: float

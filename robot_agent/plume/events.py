@@ -5,24 +5,52 @@ says where the air was so many seconds before. Whoever hears the event needs no 
 the same of it as everybody else, whenever it comes. The robot that made it uses what the others will read, too: the
 quantised record, never the numbers behind it.
 
-The record, 23 bytes: robot (u16), age (u8, decisions before the message's), x and y (u16, parts of the arena), hit and
-diffusivity (1 + 7 bits), unit of the speeds (u8), and for each of 7 stretches of the way the mean wind (2 i8).
+The record, 14 bytes: robot (u16), then 96 bits from the low ones on: x and y (12 bits each, parts of the arena), hit (1),
+diffusivity (7), the mean wind of the first stretch of the way (2 x 8), and where each of the 6 other stretches ends (2 x 4),
+told as how far that is from where the mean wind since then leads, in steps that widen with the way's own deviation
+    sigma(q)^2 = sigma_0^2 + D q.
+Where a way bends more sharply than the steps can say, it is caught up with at the next stretch: rounding never adds up.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
-from math import ceil, isfinite, log
-from struct import Struct
+from math import isfinite, log, sqrt
 from typing import NamedTuple
 
 from protocol.scenario.sections import Arena
 
 LAGS = (2.0, 5.0, 11.0, 22.0, 40.0, 68.0, 110.0)  # s: ends of the stretches; further back the way is less certain
-_FORM = Struct(f"<HHHBB{2 * len(LAGS)}b")
-SIZE = _FORM.size  # bytes of a record without its age
-UNIT = 0.005  # m/s
-_D0, _RATIO = 0.01, 1.06  # diffusivity: _D0 _RATIO^code, m^2/s
+SIZE = 14  # bytes of a record
+NAME = 2  # of them say whose it is
+_PLACES, _INSIDE = 4096, 3072  # steps of a coordinate; of them inside the arena: a robot may stand a little outside
+_D0, _RATIO, _CODES = 0.01, 1.06, 128  # diffusivity: _D0 _RATIO^code, m^2/s
+_SIGMA0 = 0.7  # m
+
+
+def _ladder(first: float, ratio: float, count: int) -> tuple[float, ...]:
+    """0 and `count` rungs, the first two `first` apart, every distance `ratio` times the one before."""
+    rungs, step = [0.0], first
+    for _ in range(count):
+        rungs.append(rungs[-1] + step)
+        step *= ratio
+    return tuple(rungs)
+
+
+_WIND = _ladder(0.01, 1.04, 128)  # m/s: 1 cm/s apart in a calm, 5 cm/s at 1 m/s; the last is 37 m/s
+_BEND = _ladder(0.2, 1.25, 8)  # deviations of the way: 0.2 apart at first; the last is 4
+_SPANS = tuple((m, lag, LAGS[m + 1], (LAGS[m + 1] - lag) / lag) for m, lag in enumerate(LAGS[:-1]))
+
+
+def _signed(rungs: tuple[float, ...]) -> tuple[float, ...]:
+    """By code: 0 ... n - 1 as they are, n ... 2 n - 1 for -n ... -1."""
+    return rungs[:-1] + tuple(-rung for rung in reversed(rungs[1:]))
+
+
+_WINDS, _BENDS = _signed(_WIND), _signed(_BEND)
+_DS = tuple(_D0 * _RATIO**code for code in range(_CODES))
+_SIGMAS = tuple(tuple(sqrt(_SIGMA0 * _SIGMA0 + D * lag) for lag in LAGS[1:]) for D in _DS)
 
 Key = tuple[int, int]  # (decision, robot)
 Place = tuple[float, float]
@@ -47,43 +75,55 @@ def pack(robot: int, hit: bool, x: float, y: float, D: float, way: Sequence[Plac
         D: m^2/s.
         way: displacement of the air during the latest LAGS[m] seconds, m; one for every lag.
     """
-    places = [(0.0, 0.0), *way]
-    lags = (0.0, *LAGS)
-    fastest = 0.0
-    for m in range(len(LAGS)):
-        (ax, ay), (bx, by), span = places[m], places[m + 1], lags[m + 1] - lags[m]
-        fastest = max(fastest, abs(bx - ax) / span, abs(by - ay) / span)
-    scale = min(256, max(1, ceil(1.1 * fastest / (127 * UNIT)))) if isfinite(fastest) else 256
-    speeds: list[int] = []
-    ax = ay = 0.0  # what the reader will have come to: rounding does not add up
-    for (bx, by), lag, before in zip(way, LAGS, lags, strict=False):
-        step = (lag - before) * scale * UNIT
-        p, q = _clip(round((bx - ax) / step), -127, 127), _clip(round((by - ay) / step), -127, 127)
-        ax, ay = ax + p * step, ay + q * step
-        speeds += (p, q)
-    code = _clip(round(log(max(D, _D0) / _D0) / log(_RATIO)), 0, 127)
-    u = _clip(round((x - arena.x_min) / (arena.x_max - arena.x_min) * 49152) + 8192, 0, 65535)
-    v = _clip(round((y - arena.y_min) / (arena.y_max - arena.y_min) * 49152) + 8192, 0, 65535)
-    return _FORM.pack(robot, u, v, code << 1 | hit, scale - 1, *speeds)
+    code = _clip(round(log(max(D, _D0) / _D0) / log(_RATIO)), 0, _CODES - 1) if isfinite(D) else _CODES - 1
+    u = _place(x, arena.x_min, arena.x_max)
+    v = _place(y, arena.y_min, arena.y_max)
+    bits = u | v << 12 | hit << 24 | code << 25
+    c, d = _nearest(_WIND, way[0][0] / LAGS[0]), _nearest(_WIND, way[0][1] / LAGS[0])
+    bits |= c << 32 | d << 40
+    ax, ay = _WINDS[c] * LAGS[0], _WINDS[d] * LAGS[0]  # where the reader will have come to
+    shift = 48
+    for (bx, by), sigma, (_, _, _, part) in zip(way[1:], _SIGMAS[code], _SPANS, strict=True):
+        ax, ay = ax + ax * part, ay + ay * part
+        c, d = _nearest(_BEND, (bx - ax) / sigma), _nearest(_BEND, (by - ay) / sigma)
+        ax, ay = ax + _BENDS[c] * sigma, ay + _BENDS[d] * sigma
+        bits |= (c | d << 4) << shift
+        shift += 8
+    return robot.to_bytes(NAME, "little") + bits.to_bytes(SIZE - NAME, "little")
 
 
 def unpack(record: bytes, arena: Arena) -> Event:
     """Read a record of `SIZE` bytes; any bytes are some event."""
-    robot, u, v, flags, scale, *speeds = _FORM.unpack(record)
-    # A quarter of the numbers lies outside the arena: a robot may stand a little outside.
-    x = arena.x_min + (u - 8192) / 49152 * (arena.x_max - arena.x_min)
-    y = arena.y_min + (v - 8192) / 49152 * (arena.y_max - arena.y_min)
-    way = [(0.0, x, y)]
-    bx, by, before = x, y, 0.0
-    for m, lag in enumerate(LAGS):
-        step = (lag - before) * (scale + 1) * UNIT
-        bx, by, before = bx - speeds[2 * m] * step, by - speeds[2 * m + 1] * step, lag
-        way.append((lag, bx, by))
-    return Event(robot, bool(flags & 1), x, y, _D0 * _RATIO ** (flags >> 1), tuple(way))
+    bits = int.from_bytes(record[NAME:8], "little")
+    x = arena.x_min + ((bits & 4095) - 512) / _INSIDE * (arena.x_max - arena.x_min)
+    y = arena.y_min + ((bits >> 12 & 4095) - 512) / _INSIDE * (arena.y_max - arena.y_min)
+    code = bits >> 25 & 127
+    ax, ay = _WINDS[bits >> 32 & 255] * LAGS[0], _WINDS[bits >> 40] * LAGS[0]
+    way = [(0.0, x, y), (LAGS[0], x - ax, y - ay)]
+    sigmas = _SIGMAS[code]
+    for m, _, lag, part in _SPANS:
+        both, sigma = record[8 + m], sigmas[m]
+        ax, ay = ax + ax * part + _BENDS[both & 15] * sigma, ay + ay * part + _BENDS[both >> 4] * sigma
+        way.append((lag, x - ax, y - ay))
+    return Event(int.from_bytes(record[:NAME], "little"), bool(bits >> 24 & 1), x, y, _DS[code], tuple(way))
 
 
 def robot_of(record: bytes) -> int:
-    return int.from_bytes(record[:2], "little")
+    return int.from_bytes(record[:NAME], "little")
+
+
+def _place(x: float, low: float, high: float) -> int:
+    return _clip(round((x - low) / (high - low) * _INSIDE) + 512, 0, _PLACES - 1)
+
+
+def _nearest(rungs: tuple[float, ...], value: float) -> int:
+    """Code of the rung that is nearest to `value`."""
+    size = abs(value)
+    n = bisect_right(rungs, size)
+    if n == len(rungs) or (n > 0 and size - rungs[n - 1] <= rungs[n] - size):
+        n -= 1
+    last = len(rungs) - 1
+    return min(n, last - 1) if value >= 0.0 else (2 * last - n) % (2 * last)
 
 
 def _clip(n: int, low: int, high: int) -> int:

@@ -2,86 +2,95 @@
 
 Rules: union is idempotent, commutative and associative: whatever is lost, late, double or comes in another order, robots
 that have heard of the same events hold the same set; any jointly connected graph will do, directed ones too, without
-weights. A message holds a bitmap of what its sender has (once a decision, and whenever that has changed), and the events
-that a neighbour's latest bitmap lacks. Listeners that one cannot hear (directed graphs) are told each event again after 1,
-2, 4 and 8 decisions. What is malformed, of no robot, or outside the window is left out; nothing raises.
+weights. A message says what its sender has (once a decision, and whenever that has changed), and brings the events that a
+neighbour's latest saying lacks; nobody is told what it is known to have, and of two who could pass an event on only those
+do that a neighbour waits for. Listeners that one cannot hear (directed graphs) are told each event again after 1, 2, 4 and 8
+decisions. What is malformed, of no robot, or outside the window is left out; nothing raises.
 
-    message: newest decision (u32); 0, or 1 + how many decisions before it a bitmap ends that follows (u8); the bitmap
-    (window x robots bits); records, each with its age in front (u8)
+The message is `robot_agent.plume.wire`'s. Sets are kept as whole numbers, a bit for each event: decision - oldest, times the
+number of robots, plus the robot.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from robot_agent.plume.events import SIZE, Key, robot_of
+from robot_agent.plume.events import Key
+from robot_agent.plume.wire import Wire
 
 AGAIN = (1, 2, 4, 8)  # decisions after which an event is told again to those who cannot answer
-_HEAD = 5
 
 
 class Flood:
     """One robot's set of events, and what it owes its neighbours."""
 
-    def __init__(self, robots: int, window: int, hears: Iterable[int], linked: Iterable[int]) -> None:
-        """`hears`: whose messages reach me; `linked`: those, and whom my messages reach."""
+    def __init__(self, robots: int, window: int, hears: Iterable[int], reaches: Iterable[int]) -> None:
+        """`hears`: whose messages reach me; `reaches`: whom mine reach."""
         self._robots, self._window = robots, window
-        self._hears = frozenset(hears)
-        self._alone = not set(linked) | self._hears
-        self._deaf = bool(set(linked) - self._hears)
-        self._map_bytes = (robots * window + 7) // 8
+        self._wire = Wire(robots, window)
+        self._row = (1 << robots) - 1
+        self._hears, reached = frozenset(hears), frozenset(reaches)
+        self._has = dict.fromkeys(sorted(reached & self._hears), 0)  # what those are known to have who can ask me for more
+        self._alone = not reached
+        self._deaf = bool(reached - self._hears)
+        # Who cannot answer has its own events, and nobody knows what else.
+        silent = reached - self._hears
+        lacked = sum(1 << i for i in range(robots) if silent - {i})
+        self._unknown = sum(lacked << row * robots for row in range(2 * window))
         self._now = 0
+        self._oldest = 1 - window  # decision of the lowest bits
         self._known: dict[Key, bytes] = {}
-        self._has: dict[int, set[Key]] = {j: set() for j in self._hears}  # what neighbours are known to have
-        self._due: set[Key] = set()
+        self._mine = 0  # the same as a set
+        self._due = 0
         self._changed = False
 
     def clock(self, k: int) -> None:
         """Decision `k` is now: forget what is older than the window, and tell again what is to be told again."""
         self._now = k
-        oldest = k - self._window
-        self._known = {key: record for key, record in self._known.items() if key[0] > oldest}
-        for has in self._has.values():
-            has.intersection_update(self._known)
-        self._due = {key for key in self._due if key[0] > oldest}
+        passed = k - self._window + 1 - self._oldest
+        self._oldest += passed
+        self._known = {key: record for key, record in self._known.items() if 0 <= key[0] - self._oldest < 2 * self._window}
+        if passed >= 0:
+            gone = passed * self._robots
+            self._mine, self._due = self._mine >> gone, self._due >> gone
+            self._has = {robot: has >> gone for robot, has in self._has.items()}
+        else:  # a clock was set back: what neighbours have they will say again
+            self._mine, self._due = sum(map(self._bit, self._known)), 0
+            self._has = dict.fromkeys(self._has, 0)
         if self._deaf:
-            self._due |= {key for key in self._known if k - key[0] in AGAIN}
+            for age in AGAIN:
+                if age < self._window:
+                    self._due |= self._mine & self._row << (k - age - self._oldest) * self._robots
 
     def add(self, key: Key, record: bytes) -> bool:
         """Take an own event; whether it is new."""
-        if key in self._known:
+        if key in self._known or abs(key[0] - self._now) >= self._window:
             return False
-        self._known[key] = record
-        self._due.add(key)
+        self._keep(key, record)
+        self._due |= self._bit(key)
         return True
 
     def hear(self, robot: int, message: bytes) -> list[tuple[Key, bytes]]:
         """Take a neighbour's message; the events that are new."""
-        if len(message) < _HEAD or robot not in self._hears:
+        if robot not in self._hears:
             return []
-        newest, at = int.from_bytes(message[:4], "little"), _HEAD
-        has = self._has[robot]
-        if message[4]:
-            at += self._map_bytes
-            bits = int.from_bytes(message[_HEAD:at], "little")
-            upto = newest - (message[4] - 1)
-            has -= {key for key in has if key[0] <= upto}
-            has |= self._read(upto, bits)
-            self._due |= {key for key in self._known if key not in has and upto - self._window < key[0] <= upto}
+        told = self._wire.read(message, self._now)
+        if told is None:
+            return []
+        if robot in self._has and told.upto is not None and abs(told.upto - self._now) < 2 * self._window:
+            self._owe(robot, told.upto, told.has)
         new = []
-        for start in range(at, len(message) - SIZE, SIZE + 1):
-            age, record = message[start], message[start + 1 : start + 1 + SIZE]
-            key = (newest - age, robot_of(record))
-            if key[1] >= self._robots or age >= self._window or abs(key[0] - self._now) >= self._window:
+        for key, record in told.events:
+            if abs(key[0] - self._now) >= self._window:
                 continue
-            has.add(key)
+            if robot in self._has:
+                self._has[robot] |= self._bit(key)
             if key not in self._known:
-                self._known[key] = record
+                self._keep(key, record)
                 new.append((key, record))
-        if new:
-            self._changed = True
-            if self._deaf:
-                self._due |= {key for key, _ in new}
+                if self._deaf:
+                    self._due |= self._bit(key)
+        self._changed |= bool(new)
         return new
 
     def tell(self, refresh: bool) -> bytes:
@@ -90,39 +99,51 @@ class Flood:
         Args:
             refresh: a decision has just been made: say what I have, whatever has changed.
         """
-        if self._alone:
+        says = bool(self._has) and (refresh or self._changed)  # to whoever can answer
+        if self._alone or not (self._due or says):
             return b""
-        due = sorted(key for key in self._due if self._deaf or any(key not in has for has in self._has.values()))
-        self._due.clear()
-        if not (due or refresh or self._changed):
+        due, self._due = self._due & self._lacking(), 0
+        if not (due or says):
             return b""
-        newest = max(self._now, due[-1][0] if due else 0)
-        parts = [newest.to_bytes(4, "little")]
-        if refresh or self._changed:
+        events = sorted(key for key in self._known if due & self._bit(key)) if due else []
+        newest = max(self._now, events[-1][0] if events else 0)
+        events = [key for key in events if newest - key[0] < self._window]
+        upto = None
+        if says:
             # At a decision the others' events of now are still under way: nothing is said about this one.
             upto = self._now - 1 if refresh else newest
-            parts.append(bytes((1 + newest - upto,)))
-            parts.append(self._write(upto))
             self._changed = False
-        else:
-            parts.append(b"\0")
-        for key in due:
-            if newest - key[0] < self._window:
-                parts += (bytes((newest - key[0],)), self._known[key])
-        return b"".join(parts)
+        told = [(key, self._known[key]) for key in events]
+        return self._wire.write(newest, upto, self._oldest, self._window_of(self._mine, upto), told)
 
-    def _write(self, upto: int) -> bytes:
-        bits = 0
-        for k, robot in self._known:
-            if upto - self._window < k <= upto:
-                bits |= 1 << (upto - k) * self._robots + robot
-        return bits.to_bytes(self._map_bytes, "little")
+    def _keep(self, key: Key, record: bytes) -> None:
+        self._known[key] = record
+        self._mine |= self._bit(key)
 
-    def _read(self, upto: int, bits: int) -> set[Key]:
-        keys = set()
-        while bits:
-            low = bits & -bits
-            age, robot = divmod(low.bit_length() - 1, self._robots)
-            keys.add((upto - age, robot))
-            bits ^= low
-        return keys
+    def _owe(self, robot: int, upto: int, has: int) -> None:
+        """A neighbour has said what it has of the window up to `upto`."""
+        first = upto - self._window + 1 - self._oldest  # of that window, counted from my oldest
+        has, all_of_it = self._moved(has, -first), self._moved((1 << self._window * self._robots) - 1, -first)
+        said = max(0, first + self._window) * self._robots
+        self._has[robot] = has | self._has[robot] >> said << said  # of later events it has said nothing
+        self._due |= self._mine & all_of_it & ~has
+
+    def _lacking(self) -> int:
+        """What somebody who hears me may not have."""
+        common = -1
+        for has in self._has.values():
+            common &= has
+        return ~common | self._unknown
+
+    def _window_of(self, events: int, upto: int | None) -> int:
+        """Of a set, the bits of the window up to `upto`."""
+        if upto is None:
+            return 0
+        return self._moved(events, upto - self._window + 1 - self._oldest) & (1 << self._window * self._robots) - 1
+
+    def _bit(self, key: Key) -> int:
+        return 1 << (key[0] - self._oldest) * self._robots + key[1]
+
+    def _moved(self, events: int, by: int) -> int:
+        """A set as counted from `by` decisions later; what is earlier is gone."""
+        return events >> by * self._robots if by >= 0 else events << -by * self._robots

@@ -19,7 +19,7 @@ from robot_agent.plume.likelihood import LEVELS, ONE, REACH, SHARP, STEPS, WIDTH
 
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
-SOFT = 0.45  # m: half of the length on which P rises from nothing where an event's way begins
+SOFT = 0.7  # m: half of the length on which P rises from nothing where an event's way begins
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
 
 

@@ -18,7 +18,8 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import psutil
@@ -45,13 +46,14 @@ def scenario(values: dict[str, Any]) -> Scenario:
     return load_scenario(None, overrides=[(name, value, "bench") for name, value in chosen.items()])
 
 
+CELLS = [n << 32 for n in range(10_000)]
+
+
 def yardstick() -> int:
-    """Nanoseconds of a fixed loop."""
+    """Nanoseconds of a fixed loop, over as much memory as a map has: neighbours on the same processor share its caches."""
     began = time.thread_time_ns()
-    total = 0
-    for n in range(20_000):
-        total += n * n
-    assert total
+    for n in range(0, 7919 * 10_000, 7919):
+        CELLS[n % 10_000] += n
     return time.thread_time_ns() - began
 
 
@@ -83,7 +85,7 @@ class Stopwatch:
         setattr(owner, name, timed)
 
     def turn(self) -> None:
-        """A second is over."""
+        """A second of the run is over."""
         self.seconds.append(dict(self.spent))
         self.spent.update(dict.fromkeys(PARTS, 0))
 
@@ -95,6 +97,12 @@ def play(swarm: MemorySwarm, second: Callable[[], None]) -> None:
         swarm.tick()
         if swarm.session.world.tick % per_second == 0:
             second()
+
+
+def turn(watches: Sequence[Stopwatch], sticks: list[int]) -> None:
+    for watch in watches:
+        watch.turn()
+    sticks.append(yardstick())
 
 
 def measure_time(given: argparse.Namespace) -> None:
@@ -110,12 +118,7 @@ def measure_time(given: argparse.Namespace) -> None:
                 ours = [Stopwatch(robot.session.agent) for robot in swarm.robots.values()]
                 watches += ours
 
-                def second(ours: list[Stopwatch] = ours) -> None:
-                    for watch in ours:
-                        watch.turn()
-                    sticks.append(yardstick())
-
-                play(swarm, second)
+                play(swarm, partial(turn, ours, sticks))
             seconds = [second for watch in watches for second in watch.seconds[1:]]
             totals = sorted(sum(second.values()) / 1e6 for second in seconds)
             p95, stick = totals[round(0.95 * len(totals))], statistics.median(sticks) / 1e6
@@ -178,7 +181,8 @@ def measure_bytes(given: argparse.Namespace) -> None:
                 each = [sum(told) / duration for told in sent.values()]
                 rates.append(statistics.mean(each))
                 largest = max(largest, *each)
-            print(f"{graph:13}  gain {gain:4}  mean {statistics.mean(rates):6.1f} B/s, busiest robot {largest:6.1f} B/s", flush=True)
+            mean = statistics.mean(rates)
+            print(f"{graph:13}  gain {gain:4}  mean {mean:6.1f} B/s, busiest robot {largest:6.1f} B/s", flush=True)
 
 
 def main() -> None:

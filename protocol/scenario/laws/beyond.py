@@ -20,7 +20,7 @@ class PlumeMap(Table, frozen=True):
     cell: Annotated[float, Meta(ge=0.1, le=20)] = 1.0  # m
     reach: Positive = 0.9  # r: half width of a plume that is smelt, m
     upwind: NonNegative = 0.42  # how far upwind of a source it is smelt, the mean over places beside it, m
-    blur: Positive = 0.6  # sigma_0: the half width's and the way's deviation at lag 0 together, m
+    blur: Positive = 0.7  # sigma_0: the half width's and the way's deviation at lag 0 together, m
     spread: NonNegative = 0.02  # least D, m^2/s
     meander: NonNegative = 1.0  # k_D: D = spread + k_D 5 s var(wind)
     detect: OpenFraction = 0.9  # p_m: smelt when the plume passes
