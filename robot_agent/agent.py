@@ -116,6 +116,7 @@ class Agent:
             self._decision.events(own),
             self._declaration.votes(own.tick, own.t),
             self._declaration.made,
+            self._decision.word,
         )
         if self.observer is not None:
             self.observer.told(shared)
@@ -157,7 +158,7 @@ class Agent:
             self._plan = self._search.plan(own, group)
         x, y = own.x, own.y
         others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
-        u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
+        u = self._controller.control(own, neighbours.present(own.tick), others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
         drive = Drive(self.robot, own.tick, tau_left, tau_right, self._declaration.made)
         if self.observer is not None:
