@@ -77,6 +77,7 @@ class Shared(Message, frozen=True, array_like=True, gc=False):
     events: Annotated[bytes, Meta(max_length=MAX_EVENTS)] = b""  # a decision's own bytes, e.g. flooded detection events
     votes: Annotated[tuple[VoteRecord, ...], RECORDS] = ()  # what each robot holds the source's place for, passed on
     declared: DeclaredRecord | None = None  # the source is found, as the swarm says
+    word: tuple[Number, Number, Number] | None = None  # resilient fusion: my own x_hat_i, m, and when I measured last, s
 
 
 class Drive(Message, frozen=True, array_like=True, gc=False):

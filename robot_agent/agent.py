@@ -122,6 +122,7 @@ class Agent:
             self._decision.events(own),
             self._declaration.votes(own.tick, own.t),
             self._declaration.made,
+            self._decision.word,
         )
         if self.observer is not None:
             self.observer.told(shared)
@@ -166,7 +167,7 @@ class Agent:
         others += [g for g in neighbours.ghosts(own.tick) if (g[0] - x) ** 2 + (g[1] - y) ** 2 < self._near2]
         if self._proximity is not None:
             others = self._proximity.see(own, others)
-        u = self._controller.control(own, neighbours.fresh, others, self._plan, self._dt)
+        u = self._controller.control(own, neighbours.present(own.tick), others, self._plan, self._dt)
         tau_left, tau_right = wheel_torques(u[0], u[1], own, self._s.body)
         if self.guard is not None and self._proximity is not None:
             tau_left, tau_right = self.guard.permit(tau_left, tau_right, own, self._proximity.bodies)

@@ -5,7 +5,8 @@ Thesis (3.26):  y_i' = phi_i + beta sig(phi_i)^a,  phi_i = sum_j a_ij (y_j - y_i
 Departs from the thesis: lambda_i is 0 for a robot that did not measure at its last decision (switch `fusion.input`);
 one implicit step per tick with the neighbours' states held (switch `fusion.step`). The linear part keeps the mean of
 the y_i when lambda = 0; the term in beta does not, because it is a function of the sum over the neighbours. With
-`fusion.kind` = "resilient" values that may be lies are left out of the sum (robot_agent.resilient).
+`fusion.kind` = "resilient" values that may be lies are left out of the sum (robot_agent.resilient), and u_i is the median of
+what robots around say that they measured (robot_agent.words).
 """
 
 from __future__ import annotations

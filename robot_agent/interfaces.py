@@ -67,6 +67,7 @@ class Decision(Protocol):
     recall: float = 0.0  # how long the best concentration counts (`robot_agent.recall`), s; 0: for ever
     decides: bool = True  # False: h is a place to drive to, nothing is said about the source
     fuses: bool = False  # whether `estimate` is a Kalman filter's and `state` the fusion's (3.26) with `input`
+    word: tuple[float, float, float] | None = None  # its own measurements' estimate and their time (`robot_agent.words`)
     input: Point | None = None  # u_i of the fusion, m; None: it did not measure
 
     def prefill(self, reading: Reading) -> None:

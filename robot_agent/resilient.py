@@ -10,8 +10,9 @@ beta, the input and the implicit step stay as they are: (3.26) is the same with 
 
 What it costs: a value that one robot alone has is what a lie looks like, and is left out. In a plume that seldom two
 robots measure at a time (`fusion.input` = "measured") the estimate then stays where it was until as many as F+1 do, and
-with the median until a majority does. To stay within the hull of the honest is not to be right, either: within it a lie
-still moves the others.
+with the median until a majority does (`fusion.judge` = "states"). Therefore robots judge each other's measurements as well,
+as long as these are fresh (robot_agent.words, the default). To stay within the hull of the honest is not to be right,
+either: within it a lie still moves the others.
 
 Source: H. J. LeBlanc, H. Zhang, X. Koutsoukos, S. Sundaram, Resilient Asymptotic Consensus in Robust Networks, IEEE J.
 Selected Areas in Communications 31(4), 2013 (W-MSR, discrete time, linear). The form with sig(.)^a and the median are

@@ -23,6 +23,7 @@ LITERAL: dict[str, object] = {
     "planning.lost": "rest",
     "control.step": "explicit",
     "control.relay": False,
+    "control.foresee": False,
     "control.remember": 0.0,
     "trust.check": False,
     "repulsion.form": "switch",

@@ -146,6 +146,9 @@ class Fusion(Table, frozen=True):
     kind: Literal["plain", "resilient"] = "plain"  # as (3.26) says, or so that `liars` neighbours cannot pull it away
     filter: Literal["trimmed", "median"] = "trimmed"  # how, see robot_agent.resilient
     liars: Annotated[int, Meta(ge=0, le=1000)] = 1  # F: so many of a robot's neighbours may lie
+    judge: Literal["words", "states"] = "words"  # resilient: the input by robot_agent.words, or as with "plain"
+    hold: Positive = 20.0  # a word counts for so long after its robot measured, s
+    lone: Literal["follow", "wait"] = "follow"  # what a robot without a word makes of no more than `liars` of them
 
 
 class Planning(Table, frozen=True):
@@ -167,6 +170,7 @@ class Control(Table, frozen=True):
     relay: bool = True  # neighbours pass on whom they have heard, so that all keep clear of all
     relay_period: Positive = 0.2  # s
     relay_age: Positive = 2.0  # older states are not passed on, s
+    foresee: bool = True  # neighbours count where they are by now, not where a late state was told
     remember: NonNegative = 600.0  # who fell silent is kept clear of where it was last for so long, s; 0: forgotten
 
 

@@ -189,7 +189,9 @@ def potential(p: Ftmcs, d: float) -> Potential:
 
 
 def virtual_of(s: Shared, tick: int, dt: float) -> Virtual:
-    """A neighbour's virtual robot at `tick`; its real state while it has told none."""
-    x, y, vx, vy = s.virtual[:4] if len(s.virtual) >= TOLD else (s.x, s.y, s.vx, s.vy)
+    """A neighbour's virtual robot at `tick`; its real state, which is that of now already, while it has told none."""
+    if len(s.virtual) < TOLD:
+        return Virtual(s.x, s.y, s.vx, s.vy)
+    x, y, vx, vy = s.virtual[:4]
     age = (tick - s.tick) * dt
     return Virtual(x + age * vx, y + age * vy, vx, vy)

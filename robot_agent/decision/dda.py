@@ -15,6 +15,7 @@ from robot_agent.hand import Own
 from robot_agent.interfaces import Around, Decision, Fresh, Point
 from robot_agent.measurement import WindMemory, measure
 from robot_agent.rejoin import begun, middle
+from robot_agent.words import Words
 
 
 class DistributedDecision(Decision):
@@ -26,6 +27,8 @@ class DistributedDecision(Decision):
         self.recall = scenario.decision.recall
         self.input: Point | None = None
         self.fuses = True
+        judges = scenario.fusion.kind == "resilient" and scenario.fusion.judge == "words"
+        self._words = Words(scenario) if judges else None
         self._R = scenario.decision.sigma2
         self._ticks_per_decision = round(scenario.timing.decision / scenario.timing.tick)
         self._short_memory = False  # after it joined late
@@ -72,6 +75,10 @@ class DistributedDecision(Decision):
         self.estimate = kalman.update(kalman.predict(self.estimate, d.process_noise), z, self._R)
         measured = z is not None or self._s.fusion.input == "always"
         self.input = (self.estimate.x, self.estimate.y) if measured else None
+        if self._words is not None:
+            if measured:
+                self.word = (self.estimate.x, self.estimate.y, own.t)
+            self.input = self._words.input(own.t, self.word, around.fresh, self.state)
         p_hat = self._oscillation_centre(group)
         c1, c2 = d.c1, 1.0 - d.c1
         self.h = (c1 * self.state[0] + c2 * p_hat[0], c1 * self.state[1] + c2 * p_hat[1])

@@ -31,5 +31,9 @@ def told(state: Shared, reading: Reading, fault: Liar, number: int, seed: int) -
             best_y=state.y + dy,
             best_at=reading.t,
         )
+    if fault.lies == "fusion" and state.first_detected_at >= 0.0:
+        # Its word, too, and always the latest, whether it has measured or not.
+        x_hat, y_hat, _ = state.word or (state.fusion_x, state.fusion_y, 0.0)
+        state = msgspec.structs.replace(state, word=(x_hat + dx, y_hat + dy, reading.t))
     x, y = PLACES[fault.lies]
     return msgspec.structs.replace(state, **{x: getattr(state, x) + dx, y: getattr(state, y) + dy})

@@ -12,7 +12,8 @@ class Liar(Passing, frozen=True, kw_only=True, tag="liar"):
     """Robot `robot` believes and does what is right and tells something else.
 
     `lies` is what about. Its fusion state, its hand position or its decision are moved by `offset` and by normal noise of
-    standard deviation `noise` per axis; "detection": it says that it smells `ppt` now, at its place plus `offset`.
+    standard deviation `noise` per axis (with its fusion state also its word, which it always gives as new); "detection":
+    it says that it smells `ppt` now, at its place plus `offset`.
     """
 
     robot: RobotNumber
