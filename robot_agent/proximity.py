@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 from protocol.messages import Reading
 from protocol.scenario import RobotScenario
-from robot_agent.hand import Own, fastest_hand, strongest_push
+from robot_agent.hand import Own, fastest_hand, strongest_push, top_acceleration
 from robot_agent.interfaces import Point
 from robot_agent.neighbours import Placed
 
-ROUGH = 0.01  # m/s: error of a speed from two readings, for wheels that meet their limit within a tick
+ROUGH = 0.01  # m/s: error of a speed from two readings, for a forward speed that meets its limit within a tick
 STILL = 0.005  # m/s: whose mean speed over a tick was less, stands as far as one can tell
 SAME = 0.1  # m: a place that was told and one that is sensed, so near to each other, are one robot's
 BLUR = 0.3  # m: so far inside the range, who is not sensed is not there
@@ -45,6 +45,9 @@ class Proximity:
         self._dt = scenario.timing.tick
         self._top = fastest_hand(scenario.body)
         self._more = 0.5 * strongest_push(scenario.body) * self._dt + ROUGH
+        self._limit = scenario.body.max_turn - 1e-9
+        # A turn rate that meets its limit within a tick is no straight line in time: by so much its mean is off, rad/s.
+        self._astray = 2.0 * top_acceleration(scenario.body) / scenario.body.axle * self._dt / 8.0
         self._before: tuple[int, float, float, Sequence[Point]] = (-2, 0.0, 0.0, ())
         self.bodies: list[Sensed] = []  # of this tick, the nearest first
 
@@ -56,7 +59,8 @@ class Proximity:
             self.bodies = []
             return
         were = self._moved_on(points, nu, omega, reading) if reading.tick == tick + 1 else []
-        self.bodies = [self._body(p, were) for p in reading.near]
+        astray = self._astray if abs(omega) < self._limit <= abs(reading.omega) else 0.0
+        self.bodies = [self._body(p, were, astray) for p in reading.near]
 
     def _moved_on(self, points: Sequence[Point], nu: float, omega: float, reading: Reading) -> list[Point]:
         """Where `points` of the tick before are in the frame of now."""
@@ -66,9 +70,10 @@ class Proximity:
         hand_x, hand_y = way * cos(0.5 * turn) + L * c - L, way * sin(0.5 * turn) + L * s
         return [(c * (x - hand_x) + s * (y - hand_y), c * (y - hand_y) - s * (x - hand_x)) for x, y in points]
 
-    def _body(self, p: Point, were: Sequence[Point]) -> Sensed:
+    def _body(self, p: Point, were: Sequence[Point], astray: float) -> Sensed:
         x, y = p
-        longest = (self._top + ROUGH) * self._dt
+        more = astray * hypot(x, y)
+        longest = (self._top + ROUGH + more) * self._dt
         ways = [way for q in were if (way := hypot(x - q[0], y - q[1])) <= longest]
         if not ways:
             r = max(hypot(x, y), 1e-9)
@@ -76,7 +81,7 @@ class Proximity:
         near_x, near_y = min(were, key=lambda q: hypot(x - q[0], y - q[1]))
         mean = max(ways) / self._dt  # of two that it can have been, the faster
         vx, vy = (x - near_x) / self._dt, (y - near_y) / self._dt
-        return Sensed(x, y, vx, vy, min(mean + self._more, self._top), mean <= STILL)
+        return Sensed(x, y, vx, vy, min(mean + self._more + more, self._top), mean <= STILL)
 
     def see(self, own: Own, told: Sequence[Placed]) -> list[Placed]:
         """Everybody to keep clear of: who is sensed, and who was `told` of and is out of range.
