@@ -13,24 +13,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
-
 from deploy.hosts.seats import Seats
+from deploy.launch.attend import Attendant
 from deploy.launch.children import Children
-from deploy.launch.injector import Injector
 from deploy.launch.members import Members
-from deploy.launch.standstill import Standstill
-from deploy.launch.supervisor import Supervisor
 from deploy.launch.watcher import Watcher
 from protocol import keys
-from protocol.bus import Bus, Delivery, Lost
+from protocol.bus import Bus, Delivery
 from protocol.endpoints import make_endpoints
 from protocol.errors import SwarmFailure
 from protocol.messages import Event, Inject, Outcome, Progress, Truth
 from protocol.scenario import Scenario, lease_ms
 from protocol.zenoh_bus import ZenohBus, token_of
 
-POLL = 0.1  # s between two looks at the processes
 FLUSH = 60.0  # s that the recorder may take to write what it holds after the run
 LEAVE = 2.0  # s that the processes may take to leave after the outcome
 INTERRUPT = 1.2  # s that the world and the recorder may take to end an interrupted run,
@@ -95,7 +90,7 @@ class SwarmRun:
             if self.truth is not None:
                 bus.subscribe(keys.TRUTH, Truth)
             try:
-                outcome = self._watch(bus, children, watcher, again)
+                outcome = Attendant(bus, scenario, children, watcher, again, self.truth, self.seats).attend()
             except KeyboardInterrupt:
                 self._interrupt(bus, children)
                 raise
@@ -110,100 +105,6 @@ class SwarmRun:
         if recorded and (words := children.members["recorder"].last_words()):
             watcher.event(Event(outcome.ticks, outcome.time, -1, words))
         return outcome
-
-    def _watch(self, bus: Bus, children: Children, watcher: Watcher, again: Callable[[str], None]) -> Outcome:
-        begun = False
-        silent_since: float | None = None  # when the world's liveliness was lost, without its process having ended
-        injector = Injector(children)
-        # In real time the world finds out of itself that a robot hangs as planned; in lock-step it knows.
-        planned = injector.stopped if self.scenario.clock == "lockstep" else ()
-        standstill = Standstill(children, bus.publisher(keys.STOPPED, reliable=True), planned)
-        tick, t = 0, 0.0
-        started = time.monotonic()
-        supervisor = Supervisor(
-            self.scenario, children, again, lambda robot, text: watcher.event(Event(tick, t, robot, text))
-        )
-        while True:
-            event = bus.receive(POLL)
-            if isinstance(event, Delivery):
-                message = event.message
-                if isinstance(message, Outcome):
-                    injector.end()
-                    return message
-                if isinstance(message, Inject):
-                    if message.action == "kill":
-                        supervisor.planned(message)
-                    injector.do(message)
-                if isinstance(message, Progress):
-                    if not begun:
-                        injector.refuse_beyond_reach(self.scenario)
-                    begun = True
-                    tick, t = message.tick, message.t
-                    watcher.progress(message)
-                elif isinstance(message, Event):
-                    watcher.event(message)
-                elif isinstance(message, Truth) and self.truth is not None:
-                    self.truth(message)
-            if begun and (event is None or not isinstance(event, Delivery) or isinstance(event.message, Event | Inject)):
-                supervisor.look(time.monotonic())
-            if begun:
-                standstill.look(time.monotonic())
-            if isinstance(event, Lost) and event.name == keys.WORLD:
-                silent_since = time.monotonic()
-            elif event is not None and not isinstance(event, Lost):
-                silent_since = None
-            if silent_since is not None and time.monotonic() - silent_since > self.scenario.network.return_timeout:
-                silent_since = None
-                self._end_hung_world(children, restarted=begun and supervisor.keeps_world)
-            if event is None and not begun:
-                self._refuse_unreachable(bus, time.monotonic() - started)
-            if event is None or isinstance(event, Lost):
-                if (outcome := self._left_behind(children)) is not None:
-                    injector.end()
-                    return outcome
-                if not (begun and supervisor.keeps_world):
-                    self._look_after(children, begun)
-
-    def _left_behind(self, children: Children) -> Outcome | None:
-        """What a world that has ended well wrote down, for whom the link to it was down when it told the outcome."""
-        if children.members[keys.WORLD].status != 0:
-            return None
-        try:
-            return msgspec.json.decode((children.folder / "outcome.json").read_bytes(), type=Outcome)
-        except FileNotFoundError:
-            return None
-
-    def _refuse_unreachable(self, bus: Bus, waited: float) -> None:
-        """A world on another host may be out of reach while its process there, and the command to it, live."""
-        patience = self.scenario.network.join_timeout
-        if self.seats is not None and waited > patience and keys.WORLD not in bus.links():
-            raise SwarmFailure(
-                f"no world answers at {self.seats.endpoints[0]} within {patience:g} s; look whether its command gets "
-                f"through to that host, and whether this one reaches the address."
-            )
-
-    def _end_hung_world(self, children: Children, *, restarted: bool) -> None:
-        """The world's process is there and says nothing: end it, so that the supervisor starts it again, or the run."""
-        world = children.members[keys.WORLD]
-        if world.status is not None:
-            return
-        world.process.kill()
-        if not restarted:
-            seconds = self.scenario.network.return_timeout
-            raise SwarmFailure(f"the world hangs: nothing was heard of it for {seconds:g} s.")
-
-    def _look_after(self, children: Children, begun: bool) -> None:
-        """Notice what cannot be mended: the world is gone, or somebody is before the run began."""
-        failed = children.failed([keys.WORLD] if begun else None)
-        if children.members[keys.WORLD].status is not None and not failed:
-            raise SwarmFailure("the world ended without an outcome.")
-        if failed:
-            # When one fails the others do in consequence, and say that somebody is gone or missing: the cause is another.
-            consequences = ("is gone", "is not complete")
-            told = [c for c in failed if not any(text in c.last_words() for text in consequences)]
-            child = (told or sorted(failed, key=lambda c: c.name != keys.WORLD))[0]
-            how = f"status {child.status}" if (child.status or 0) > 0 else f"signal {-(child.status or 0)}"
-            raise SwarmFailure(f"{child.name} ended with {how}: {child.last_words() or 'it said nothing.'}")
 
     def _interrupt(self, bus: Bus, children: Children) -> None:
         """Let the world end the run and the recorder write what it has; all within two seconds."""
