@@ -43,6 +43,7 @@ class Attendant:
     _supervisor: Supervisor = field(init=False)
     _begun: bool = False
     _at: tuple[int, float] = (0, 0.0)  # tick and s, as the world told last
+    _next: float = 0.0  # when the processes are to be looked at
     _silent_since: float | None = None  # when the world's liveliness was lost, without its process having ended
 
     def __post_init__(self) -> None:
@@ -98,7 +99,9 @@ class Attendant:
     def _look(self, event: BusEvent | None, now: float) -> None:
         """Look at the processes: who has ended, who stands still, whether the world says anything."""
         if self._begun:
-            if not isinstance(event, Delivery) or isinstance(event.message, Event | Inject):
+            # Also while one message follows the other: somebody may be due to be started again.
+            if (isinstance(event, Delivery) and isinstance(event.message, Event | Inject)) or now >= self._next:
+                self._next = now + POLL
                 self._supervisor.look(now)
             self._standstill.look(now)
         if isinstance(event, Lost) and event.name == keys.WORLD:
