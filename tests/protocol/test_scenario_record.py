@@ -182,7 +182,7 @@ def value_of(path: str) -> st.SearchStrategy[Any]:
         "drill.velocity": st.tuples(numbers, numbers),
         "drill.centre": st.tuples(numbers, numbers),
         "drill.radii": st.lists(st.floats(0, 1e9, exclude_min=True), max_size=3).map(tuple),
-        "sensors.proximity": st.floats(0.0, 1e3),
+        "sensors.proximity": st.floats(0.0, 100.0),
         "network.endpoints": st.lists(st.text(st.characters(exclude_categories=["Cs"]))).map(tuple),
     }[path]
 
