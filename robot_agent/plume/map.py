@@ -14,12 +14,13 @@ from math import ceil, hypot, log
 
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
-from robot_agent.plume.events import Event
+from robot_agent.plume.events import LAGS, Event
 from robot_agent.plume.likelihood import LEVELS, ONE, REACH, SHARP, STEPS, WIDTH, Likelihood
 
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
 SOFT = 0.7  # m: half of the length on which P rises from nothing where an event's way begins
+SHARED = 10.0  # s: for so long the air that a robot meets now and its own samples shared the same wind
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
 
 
@@ -35,6 +36,8 @@ class EventMap:
         self.M = [0] * (self.nx * self.ny)  # cell (i, j) at i ny + j
         self._tables = Likelihood(p)
         self._half_life = p.forget * log(2.0) / step  # decisions
+        # By which the part of D that comes of the wind's variance makes the way's variance grow up to every lag.
+        self._growth = [0.0] + [lag / (1.0 + (SHARED / lag) ** 3) for lag in LAGS]
         self.newest = 0
 
     def learn(self, k: int, event: Event) -> None:
@@ -48,12 +51,14 @@ class EventMap:
         end = way[-1]
         by_x = abs(end[1] - way[0][1]) >= abs(end[2] - way[0][2])
         start = self._behind(way)
+        least, more = min(event.D, p.spread), max(0.0, event.D - p.spread)
+        grown = [p.blur**2 + least * q + more * by for (q, _, _), by in zip(way, self._growth, strict=True)]
         for m, two in enumerate(way[1:]):
             thick = 1 if event.hit or m < NEAR else p.thin
             if m >= NEAR and not far:
                 return
             one = start if m == 0 else way[m]
-            self._along(one, two, event, weight * thick, int(whole), by_x, m == 0)
+            self._along(one, two, grown[m], grown[m + 1], event.hit, weight * thick, int(whole), by_x, m == 0)
 
     def scale(self) -> float:
         """What a whole number of M is worth now, nats. (The newest event known says what now is.)"""
@@ -73,7 +78,9 @@ class EventMap:
         self,
         one: tuple[float, float, float],
         two: tuple[float, float, float],
-        event: Event,
+        variance: float,
+        end: float,
+        hit: bool,
         weight: float,
         shift: int,
         by_x: bool,
@@ -97,7 +104,7 @@ class EventMap:
         if first >= last or run == 0.0:
             return
         cosine = max(FLAT, abs(run) / hypot(run, rise))
-        hit, tau = event.hit, tables.tau
+        tau = tables.tau
         rows, sigmas, rungs, fine, exact = (
             tables.hits if hit else tables.misses, tables.sigmas, tables.rungs, tables.fine, len(tables.rungs)
         )  # fmt: skip
@@ -106,7 +113,8 @@ class EventMap:
         soft = 2.0 * SOFT * cosine
         # All that changes evenly from line to line, from line `first` on.
         part, by_part = (first - p1) / (p2 - p1), 1.0 / (p2 - p1)
-        variance, by_variance = self._p.blur**2 + event.D * (q1 + part * later), event.D * by_part * later
+        by_variance = by_part * (end - variance)
+        variance += part * (end - variance)
         middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
         rung = -1
         w = round(weight) << shift
