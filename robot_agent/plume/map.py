@@ -21,7 +21,9 @@ FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
 SOFT = 0.7  # m: half of the length on which P rises from nothing where an event's way begins
 SHARED = 10.0  # s: for so long the air that a robot meets now and its own samples shared the same wind
-NEAR = 3  # stretches of the way (11 s) that every miss is drawn along
+NEAR = 3  # stretches of the way (11 s) that every miss is drawn along,
+WIDE = 3.0  # m: as long as the way's deviation is below this
+FAINT = 2.2  # sigmas: how far beside the way a miss is drawn; there it says less than a twentieth of what it says on it
 
 
 class EventMap:
@@ -53,9 +55,10 @@ class EventMap:
         start = self._behind(way)
         least, more = min(event.D, p.spread), max(0.0, event.D - p.spread)
         grown = [p.blur**2 + least * q + more * by for (q, _, _), by in zip(way, self._growth, strict=True)]
+        near = NEAR if grown[NEAR] < WIDE**2 else NEAR - 1
         for m, two in enumerate(way[1:]):
-            thick = 1 if event.hit or m < NEAR else p.thin
-            if m >= NEAR and not far:
+            thick = 1 if event.hit or m < near else p.thin
+            if m >= near and not far:
                 return
             one = start if m == 0 else way[m]
             self._along(one, two, grown[m], grown[m + 1], event.hit, weight * thick, int(whole), by_x, m == 0)
@@ -116,6 +119,7 @@ class EventMap:
         by_variance = by_part * (end - variance)
         variance += part * (end - variance)
         middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
+        reach = (REACH if hit else FAINT) / narrow
         rung = -1
         w = round(weight) << shift
         corner = first * stride_a
@@ -124,7 +128,7 @@ class EventMap:
             n = rungs[n] if n < exact else tables.rung(variance)
             if n != rung:  # it stays for some lines
                 rung, sigma, row = n, sigmas[n], rows[n]
-                half, dz = REACH * sigma / narrow, narrow / sigma * STEPS
+                half, dz = reach * sigma, narrow / sigma * STEPS
             start, stop = ceil(middle - half), ceil(middle + half)
             if start < 0:
                 start = 0
