@@ -4,6 +4,10 @@
 
 is kept as L = 2^(-k / T_2) M with M = sum_e 2^(k_e / T_2) dl_e, so that forgetting costs nothing: later events weigh more.
 
+The way's variance grows with the lag as was measured in such winds (docs/plume-map.md), with D = D_min + k_D 5 s var(wind):
+    sigma(q)^2 = sigma_0^2 + D_min q + (D - D_min) 20 q / (1 + (28 s / q)^3).
+For some seconds next to nothing, for the robot met the same wind as the plume beside it; later far more than D says.
+
 Rules: M is a sum of whole numbers, each of which depends on its event alone. Robots with the same events hold the same M to
 the bit, in whatever order and however late the events came. Python's integers do not overflow.
 """
@@ -20,7 +24,8 @@ from robot_agent.plume.likelihood import LEVELS, ONE, REACH, SHARP, STEPS, WIDTH
 FRACTION = 10  # bits of an event's weight
 FLAT = 0.35  # least cosine between a stretch and the axis that its cells are visited along
 SOFT = 0.7  # m: half of the length on which P rises from nothing where an event's way begins
-SHARED = 10.0  # s: for so long the air that a robot meets now and its own samples shared the same wind
+SHARED = 28.0  # s: for so long the air that a robot meets now and its own samples have nearly shared the same wind
+APART = 20.0  # much further back they have not, and the way's variance grows so many times faster than D says
 NEAR = 3  # stretches of the way (11 s) that every miss is drawn along,
 WIDE = 3.0  # m: as long as the way's deviation is below this
 FAINT = 2.2  # sigmas: how far beside the way a miss is drawn; there it says less than a twentieth of what it says on it
@@ -39,7 +44,7 @@ class EventMap:
         self._tables = Likelihood(p)
         self._half_life = p.forget * log(2.0) / step  # decisions
         # By which the part of D that comes of the wind's variance makes the way's variance grow up to every lag.
-        self._growth = [0.0] + [lag / (1.0 + (SHARED / lag) ** 3) for lag in LAGS]
+        self._growth = [0.0] + [APART * lag / (1.0 + (SHARED / lag) ** 3) for lag in LAGS]
         self.newest = 0
 
     def learn(self, k: int, event: Event) -> None:
