@@ -112,17 +112,15 @@ class EventMap:
         if first >= last or run == 0.0:
             return
         cosine = max(FLAT, abs(run) / hypot(run, rise))
-        tau = tables.tau
-        rows, sigmas, rungs, fine, exact = (
-            tables.hits if hit else tables.misses, tables.sigmas, tables.rungs, tables.fine, len(tables.rungs)
+        rows, sigmas, rungs, fine, exact, tau = (
+            tables.hits if hit else tables.misses, tables.sigmas, tables.rungs, tables.fine, len(tables.rungs), tables.tau
         )  # fmt: skip
         edge = tables.begin_hits if hit else tables.begin_misses
         narrow = cosine * cell  # of a sigma across the lines, in their direction
         soft = 2.0 * SOFT * cosine
         # All that changes evenly from line to line, from line `first` on.
         part, by_part = (first - p1) / (p2 - p1), 1.0 / (p2 - p1)
-        by_variance = by_part * (end - variance)
-        variance += part * (end - variance)
+        variance, by_variance = variance + part * (end - variance), by_part * (end - variance)
         middle, by_middle = (b1 + part * rise - b0) / cell - 0.5, by_part * rise / cell
         reach = (REACH if hit else FAINT) / narrow
         rung = -1
