@@ -178,8 +178,8 @@ class Declaration(Table, frozen=True):
     """When the swarm says that it has found the source, without being told; not of the thesis."""
 
     stop: Literal["reached", "declared"] = "reached"  # what ends the run: a robot at the source, or the swarm's own word
-    radius: Positive = 0.5  # a robot is sure when its posterior is this narrow, m
-    hold: NonNegative = 8.0  # and has been for so long, s
+    radius: Positive = 0.45  # a robot is sure when its posterior is this narrow, m
+    hold: NonNegative = 5.0  # and has been for so long, s
     tolerance: Positive = 0.5  # estimates so near to each other agree, m
     window: Positive = 10.0  # a robot not heard of for so long is not asked, s
     period: Positive = 0.2  # between two tellings of the votes, s
