@@ -35,15 +35,17 @@ class WindPast:
     def way(self) -> list[Place]:
         """Displacement of the air during the latest LAGS[m] seconds, m."""
         samples, step = self._samples, self._step
-        mean_x = sum(u for u, _ in samples) / max(len(samples), 1)
-        mean_y = sum(v for _, v in samples) / max(len(samples), 1)
+        mean = (0.0, 0.0)
+        if len(samples) < round(LAGS[-1] / step):
+            n = max(len(samples), 1)
+            mean = (sum(u for u, _ in samples) / n, sum(v for _, v in samples) / n)
         x = y = 0.0
         n = 0
         places = []
         latest = reversed(samples)
         for lag in LAGS:
             for _ in range(round(lag / step) - n):
-                u, v = next(latest, (mean_x, mean_y))
+                u, v = next(latest, mean)
                 x, y = x + u * step, y + v * step
             n = round(lag / step)
             places.append((x, y))

@@ -2,9 +2,9 @@
 
 The plume is smelt within r of its middle line, and where that runs is uncertain by s. A source that the way passes at the
 lateral distance d, lag q before the event, is smelt with the probability
-    P = p_m (Phi((r - d) / s) - Phi((-r - d) / s)),    s^2 = sigma^2 - r^2 / 3,    sigma^2 = sigma_0^2 + D q
-(sigma is the deviation of both together: r^2 / 3 is the variance of a place somewhere within r). By Bayes' rule the event
-adds to the logarithm of the likelihood
+    P = p_m (Phi((r - d) / s) - Phi((-r - d) / s)),    s^2 = sigma^2 - r^2 / 3
+(sigma(q), see `robot_agent.plume.map`, is the deviation of both together: r^2 / 3 is the variance of a place somewhere
+within r). By Bayes' rule the event adds to the logarithm of the likelihood
     hit:   b_d log(1 + (1 - p_fa) P / p_fa)
     miss:  b_n log(1 - P) / (1 + q / tau_c)
 (misses in a row share the same error of the way: far ones say little new).

@@ -1,6 +1,6 @@
 """Mean and spread of where the source may be, below the size of a cell where the map is sharp.
 
-Rules: a function of the map alone. A wide posterior is summed over every second cell of every second row. Where the
+Rules: a function of the map alone. A wide posterior is summed over every fourth cell of every second row. Where the
 spread is a few cells, each cell that matters is divided into 4 x 4 parts, with the logarithm between the middles of cells
 by the parabola through three of them: the map is smooth on that scale, for the way of the air has a width, and the mean
 is no longer bound to the middles of cells.
@@ -15,7 +15,7 @@ from robot_agent.interfaces import Posterior
 from robot_agent.plume.map import EventMap
 
 CUT = 9.0  # nats below the best cell: no longer counted
-MANY = 300  # cells of the coarse sum: as many are a wide posterior
+MANY = 60  # cells of the coarse sum: as many are a wide posterior
 SHARP = 3.0  # cells: a smaller spread is looked at more closely
 PARTS = (-0.375, -0.125, 0.125, 0.375)
 
@@ -25,11 +25,12 @@ Moments = tuple[float, float, float, float, float]  # mean x, y, covariance xx, 
 def posterior(chart: EventMap) -> Posterior:
     """Moments of exp(L), normalised."""
     scale = chart.scale()
-    found, count = _coarse(chart, range(0, chart.nx, 2), range(0, chart.ny, 2), scale)
+    all_over = _Window(chart, range(0, chart.nx, 2), range(0, chart.ny, 2), scale)
+    found, count = all_over.moments(2)
     if count < MANY:
-        x, y, xx, _, yy = found
+        (x, y, xx, _, yy), _ = all_over.moments(1)
         near = _about(x, 5.0 * sqrt(xx) + 4.0, chart.nx), _about(y, 5.0 * sqrt(yy) + 4.0, chart.ny)
-        found, _ = _coarse(chart, *near, scale)
+        found, _ = _Window(chart, *near, scale).moments(1)
         if found[2] + found[4] < SHARP**2:
             found = _fine(chart, found, scale)
     x, y, xx, xy, yy = found
@@ -47,30 +48,39 @@ def _about(middle: float, reach: float, n: int) -> range:
     return range(max(0, int(middle - reach)), min(n, int(middle + reach) + 2))
 
 
-def _coarse(chart: EventMap, xs: range, ys: range, scale: float) -> tuple[Moments, int]:
-    """Over the cells (i, j) with i in `xs` and j in `ys`; how many of them counted."""
-    M, ny = chart.M, chart.ny
-    rows = [M[i * ny + ys.start : i * ny + ys.stop : ys.step] for i in xs]
-    tops = list(map(max, rows))
-    top = max(tops)
-    floor = top - int(CUT / scale)
-    columns = tuple(map(float, ys))
-    sums: list[tuple[int, float, float, float]] = []
-    blank: dict[int, tuple[float, float, float]] = {}  # rows that no event has touched yet are all the same
-    count = 0
-    for i, row, highest in zip(xs, rows, tops, strict=True):
-        if highest <= floor:
-            continue
-        if row[0] == highest and row.count(highest) == len(row):
-            if highest not in blank:
-                blank[highest] = _row(row, columns, top, floor, scale)[:3]
-            sums.append((i, *blank[highest]))
-            count += len(row)
-        else:
-            w, wy, wyy, n = _row(row, columns, top, floor, scale)
-            sums.append((i, w, wy, wyy))
-            count += n
-    return _moments(sums), count
+class _Window:
+    """The cells (i, j) with i in `xs` and j in `ys`."""
+
+    def __init__(self, chart: EventMap, xs: range, ys: range, scale: float) -> None:
+        M, ny = chart.M, chart.ny
+        self._xs, self._scale = xs, scale
+        self._rows = [M[i * ny + ys.start : i * ny + ys.stop : ys.step] for i in xs]
+        self._tops = list(map(max, self._rows))
+        self._top = max(self._tops)
+        self._floor = self._top - int(CUT / scale)
+        self._columns = tuple(map(float, ys))
+
+    def moments(self, step: int) -> tuple[Moments, int]:
+        """Over every `step`th cell of each row, other ones from row to row; and how many of them counted."""
+        top, floor, scale = self._top, self._floor, self._scale
+        columns = [self._columns[turn::step] for turn in range(step)]
+        sums: list[tuple[int, float, float, float]] = []
+        blank: dict[tuple[int, int], tuple[float, float, float]] = {}  # rows that no event has touched are all the same
+        count = turn = 0
+        for i, row, highest in zip(self._xs, self._rows, self._tops, strict=True):
+            turn = (turn + 1) % step
+            if highest <= floor:
+                continue
+            if row[0] == highest and row.count(highest) == len(row):
+                if (highest, turn) not in blank:
+                    blank[highest, turn] = _row(row[turn::step], columns[turn], top, floor, scale)[:3]
+                sums.append((i, *blank[highest, turn]))
+                count += len(columns[turn])
+            else:
+                w, wy, wyy, n = _row(row[turn::step], columns[turn], top, floor, scale)
+                sums.append((i, w, wy, wyy))
+                count += n
+        return _moments(sums), count
 
 
 def _row(
@@ -141,5 +151,7 @@ def _moments(sums: Sequence[tuple[float, float, float, float]]) -> Moments:
         xx += w * u * u
         xy += wy * u
         yy += wyy
+    if total == 0.0:  # the few that count lie between those that were looked at
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     x, y = x / total, y / total
     return x, y, max(0.0, xx / total - x * x), xy / total - x * y, max(0.0, yy / total - y * y)

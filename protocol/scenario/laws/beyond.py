@@ -22,7 +22,7 @@ class PlumeMap(Table, frozen=True):
     upwind: NonNegative = 0.42  # how far upwind of a source it is smelt, the mean over places beside it, m
     blur: Positive = 0.7  # sigma_0: the half width's and the way's deviation at lag 0 together, m
     spread: NonNegative = 0.02  # least D, m^2/s
-    meander: NonNegative = 1.0  # k_D: D = spread + k_D 5 s var(wind)
+    meander: NonNegative = 1.0  # k_D: D = spread + k_D 5 s var(wind); how the second part acts: robot_agent/plume/map.py
     detect: OpenFraction = 0.9  # p_m: smelt when the plume passes
     false: OpenFraction = 0.03  # p_fa: smelt without a plume
     hit: Positive = 0.7  # weight of a hit
