@@ -141,7 +141,7 @@ def test_without_a_result_a_few_runs_are_made_and_kept(tmp_path, monkeypatch) ->
     assert json.loads(command("--out", tmp_path, "--json").stdout) == more
 
 
-@pytest.mark.parametrize("name", ["beyond", "plume-map-declared", "plume-map-graphs", "plume-map-sizes"])
+@pytest.mark.parametrize("name", ["beyond", "plume-map-graphs", "plume-map-sizes"])
 def test_the_studies_are_right(name: str) -> None:
     plan = make_plan(find_spec(name))
     assert plan.spec.seeds == 50
