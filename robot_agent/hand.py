@@ -91,23 +91,3 @@ def strongest_push(body: Body) -> float:
     top of what turning alone gives, L omega^2 backwards and nu omega sideways."""
     top, swing, drift = top_acceleration(body), body.hand * body.max_turn**2, body.max_speed * body.max_turn
     return max(hypot(top + swing, drift), hypot(swing, 2.0 * top * body.hand / body.axle + drift))
-
-
-def limited(tau_left: float, tau_right: float, body: Body) -> tuple[float, float]:
-    """The torques that the motors give when asked for these, N m."""
-    most = body.max_torque
-    if body.saturation == "proportional":
-        largest = max(abs(tau_left), abs(tau_right))
-        scale = most / largest if largest > most else 1.0
-        return tau_left * scale, tau_right * scale
-    return max(-most, min(most, tau_left)), max(-most, min(most, tau_right))
-
-
-def stopping_torques(nu: float, omega: float, body: Body, dt: float) -> tuple[float, float]:
-    """Torques that stop each wheel within `dt`, or as soon as it can be, N m.
-
-    A wheel's rim obeys v' = b tau / J_wheel on its own, so each wheel is stopped on its own.
-    """
-    sideways, per_speed, most = 0.5 * body.axle * omega, -body.wheel_inertia / (body.wheel_radius * dt), body.max_torque
-    left, right = per_speed * (nu - sideways), per_speed * (nu + sideways)
-    return max(-most, min(most, left)), max(-most, min(most, right))

@@ -16,6 +16,7 @@ from math import ceil, cos, hypot, sin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from protocol.motors import limited, stopping_torques
 from protocol.scenario.sections import Body, Timing
 from world_server.snapshot import BodyState
 
@@ -183,31 +184,9 @@ class Bodies:
         turning = body.wheel_radius / (body.axle * body.wheel_inertia)
         rows, ways = [], []
         for robot, braking, left, right in zip(self.robots, self._braking, tau_left, tau_right, strict=True):
-            tau_l, tau_r = self._stopping(robot) if braking else (left, right)
-            tau_l, tau_r = limited(tau_l, tau_r, body)
+            asked = stopping_torques(robot.nu, robot.omega, body, self._tick) if braking else (left, right)
+            tau_l, tau_r = limited(*asked, body)
             start = complex(robot.hand_x, robot.hand_y)
             ways.append(robot.move(forward * (tau_l + tau_r), turning * (tau_r - tau_l), h, substeps, body))
             rows.append([start, complex(robot.hand_x, robot.hand_y)])
         return Path(rows, ways, self._tick)
-
-    def _stopping(self, robot: Unicycle) -> tuple[float, float]:
-        """Torques that stop each wheel within the tick, if they are not too large.
-
-        A wheel's rim obeys v' = b tau / J_wheel on its own, so each wheel is stopped on its own.
-        """
-        body = self._body
-        sideways = 0.5 * body.axle * robot.omega
-        per_speed = -body.wheel_inertia / (body.wheel_radius * self._tick)
-        most = body.max_torque
-        left, right = per_speed * (robot.nu - sideways), per_speed * (robot.nu + sideways)
-        return max(-most, min(most, left)), max(-most, min(most, right))
-
-
-def limited(tau_l: float, tau_r: float, body: Body) -> tuple[float, float]:
-    """The torques that the motors give when asked for these, N m."""
-    most = body.max_torque
-    if body.saturation == "proportional":
-        largest = max(abs(tau_l), abs(tau_r))
-        scale = most / largest if largest > most else 1.0
-        return tau_l * scale, tau_r * scale
-    return max(-most, min(most, tau_l)), max(-most, min(most, tau_r))

@@ -35,10 +35,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import ceil, cos, hypot, sin
 
+from protocol.motors import limited, stopping_torques
 from protocol.scenario import RobotScenario
 from protocol.scenario.sections import Body
 from robot_agent.control.stops import Stops
-from robot_agent.hand import Own, fastest_hand, limited, stopping_torques
+from robot_agent.hand import Own, fastest_hand
 from robot_agent.interfaces import Point
 from robot_agent.proximity import Sensed
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from protocol.motors import limited
 from protocol.scenario import Scenario
 from protocol.scenario.faults import Actuator
-from world_server.bodies import limited
 
 
 class ActuatorFaults:
