@@ -2,7 +2,8 @@
 
 Rules: no clock, no socket; messages go in by `take_*` and out by the two publications given at the start. A reading
 says which (neighbour, tick) states to wait for; the session waits for exactly these, and a neighbour that is lost is
-not waited for. What is late, early, double or not asked for is counted and dropped; nothing raises.
+not waited for. What is late, early, double or not asked for is counted and dropped; nothing raises. A reading that comes
+twice says that somebody misses something: what was said is said again, and whoever has it drops it.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ class RobotSession:
         self._tell = tell
         self._drive = drive
         self._states: dict[int, dict[int, Shared]] = {}  # tick -> neighbour -> its state
+        self._said: dict[int, Shared] = {}  # tick -> what was told then, for as long as somebody may wait for it
         self._hears: tuple[tuple[int, int], ...] = ()
         self._missing: set[tuple[int, int]] = set()
         self._gone: set[int] = set()  # neighbours that no link leads to now
@@ -36,15 +38,18 @@ class RobotSession:
         """Begin the next tick; whether the tick was finished at once."""
         tick = reading.tick
         if tick != self.tick + 1 or reading.robot != self.agent.robot or self.waiting:
-            if tick == self.tick and reading.robot == self.agent.robot and self._answer is not None:
-                self._drive(self._answer)  # a world that came back does not know it
+            if tick == self.tick and reading.robot == self.agent.robot:
+                self._say_again()
             else:
                 self.dropped += 1
             return False
         self.tick = tick
         states = self._states
         states.pop(tick - HISTORY, None)
-        self._tell(self._sense(reading))
+        said = self._said
+        said.pop(tick - HISTORY, None)
+        state = said[tick] = self._sense(reading)
+        self._tell(state)
         self._hears = hears = reading.hears
         of_now = states.get(tick)
         if of_now is None:
@@ -95,6 +100,14 @@ class RobotSession:
             self.waiting = False
             self._missing = set()
             self._states = {k: states for k, states in self._states.items() if k > tick - HISTORY}
+            self._said = {k: state for k, state in self._said.items() if k > tick - HISTORY}
+
+    def _say_again(self) -> None:
+        """A world that came back, or waits in vain, wants to hear this tick again; links may have come and gone."""
+        for state in self._said.values():
+            self._tell(state)
+        if self._answer is not None:
+            self._drive(self._answer)
 
     def _finish(self) -> bool:
         states = self._states

@@ -1,7 +1,7 @@
 """Lock-step on the wires: events in, a step when all who take part have answered.
 
-Rules: part of the shell. Every robot that is waited for answers, is lost, comes back or is given up, so that nothing
-waits for ever.
+Rules: part of the shell. Every robot that is waited for answers, is lost, comes back or is given up, and what got lost
+on the way is said again (`world_server.stall`), so that nothing waits for ever.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from world_server.checkpoints import Checkpoints
 from world_server.faults.slow import Slowness
 from world_server.recoverable import RecoverableSession
 from world_server.returns import Returns
+from world_server.stall import AGAIN, Stall
 from world_server.telemetry import Telemetry
 
 PROGRESS_PERIOD = 0.1  # wall-clock s
@@ -52,6 +53,7 @@ class LockstepWorld:
         batch = world.ticks_per_sample if telemetry is None else gcd(world.ticks_per_sample, telemetry.field_ticks)
         sender = {keys.robot(i, keys.DRIVE): i for i in range(scenario.robots)}
         slow = Slowness(scenario)
+        stall = Stall(scenario.network.return_timeout)
         self._next_checkpoint = self._due(world.tick)
         if not session.started:
             session.start()
@@ -64,7 +66,7 @@ class LockstepWorld:
         while session.ended is None:
             complete = complete or session.idle
             looking = complete or session.awaited or self._deserted()
-            event = receive(0 if session.idle else POLL if looking else None)
+            event = receive(0 if session.idle else POLL if looking else AGAIN)
             if isinstance(event, Delivery) and isinstance(event.message, Drive):
                 if sender[event.key] == event.message.robot:
                     complete = session.take_drive(event.message) or complete
@@ -72,6 +74,8 @@ class LockstepWorld:
                     counters.refused += 1
             elif event is not None:
                 complete = self._take(event) or complete
+            elif not complete and not session.deserted:
+                complete = stall.look(session, time.monotonic())
             if session.awaited:
                 returns.look(session)
             if complete and not returns.hold(session):

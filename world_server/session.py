@@ -62,6 +62,12 @@ class WorldSession:
         self._by_word = world.scenario.declaration.stop == "declared"  # the swarm itself says when it is over
         self._reached = False
         self.declarations = Declarations()
+        self._readings: list[Reading] = []  # of this tick
+
+    @property
+    def unanswered(self) -> list[int]:
+        """Robots that take part and whose answers of this tick are missing."""
+        return sorted(self.world.live - self._drives.keys())
 
     @property
     def over(self) -> bool:
@@ -245,6 +251,22 @@ class WorldSession:
             self.tell("all robots declare the same place")
         return agreed
 
+    def ask_again(self) -> None:
+        """Say once more what was said of this tick: a message may have got lost with a link that came and went.
+
+        Whoever has answered says everything again, for it may be a neighbour that did not hear it.
+        """
+        if self.awaited:
+            for robot in sorted(self.awaited - self.answered):
+                self.call(robot)
+            for robot in sorted(self.world.live & self._resume.keys()):
+                self._resume[robot](Resume(robot, self.world.tick))  # who is at this tick only says who it is linked to
+            return
+        for reading in self._readings:
+            if reading.robot in self.world.live:
+                self._send[reading.robot](reading)
+
     def _publish(self, readings: list[Reading]) -> None:
+        self._readings = readings
         for reading in readings:
             self._send[reading.robot](reading)

@@ -3,13 +3,11 @@
 Every wait is for a condition with a deadline; the deadlines are generous, because machines are slow and noisy.
 """
 
-import tempfile
 import threading
-from pathlib import Path
 
 import psutil
 import pytest
-from swarm_helpers import near_the_plume
+from swarm_helpers import folder_left_clean, near_the_plume
 
 from deploy.launch.swarm import SwarmRun
 from deploy.memory_run import run_in_memory
@@ -39,15 +37,8 @@ class Ear:
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch):
-    """A temporary folder of the test's own, short enough for sockets; after the test it is empty and nobody lives."""
-    with tempfile.TemporaryDirectory(prefix="t-") as name:
-        monkeypatch.setattr(tempfile, "tempdir", name)
-        yield Path(name)
-        ours = psutil.Process().children(recursive=True)
-        modules = ("world_server", "robot_agent")
-        left = [p.pid for p in ours if p.is_running() and any(m in " ".join(p.cmdline()) for m in modules)]
-        assert left == []
-        assert list(Path(name).glob("odour-*")) == []
+    with folder_left_clean(monkeypatch) as folder:
+        yield folder
 
 
 def run_over_zenoh(scenario: Scenario) -> tuple[Outcome, Ear]:

@@ -8,16 +8,14 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import psutil
 import pytest
 import zenoh
-from swarm_helpers import near_the_plume
+from swarm_helpers import folder_left_clean, near_the_plume
 
 from deploy.launch.swarm import SwarmRun
 from deploy.memory_run import run_in_memory
@@ -88,16 +86,8 @@ class Swarm:
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch):
-    """A temporary folder of the test's own, short enough for sockets; after the test it is empty and nobody lives."""
-    with tempfile.TemporaryDirectory(prefix="t-") as name:
-        monkeypatch.setattr(tempfile, "tempdir", name)
-        monkeypatch.setenv("TMPDIR", name)
-        yield Path(name)
-        ours = psutil.Process().children(recursive=True)
-        modules = ("world_server", "robot_agent", "deploy.recorder", "deploy.cli")
-        left = [p.pid for p in ours if p.is_running() and any(m in " ".join(p.cmdline()) for m in modules)]
-        assert left == []
-        assert list(Path(name).glob("odour-*")) == []
+    with folder_left_clean(monkeypatch) as folder:
+        yield folder
 
 
 @pytest.mark.parametrize(

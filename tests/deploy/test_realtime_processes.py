@@ -5,16 +5,14 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
-from swarm_helpers import near_the_plume
+from swarm_helpers import folder_left_clean, near_the_plume
 
 from deploy.launch.swarm import SwarmRun
 from protocol.errors import SwarmFailure
@@ -90,14 +88,8 @@ class Swarm:
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch):
-    """A temporary folder of the test's own; after the test it is empty and nobody lives."""
-    with tempfile.TemporaryDirectory(prefix="t-") as name:
-        monkeypatch.setattr(tempfile, "tempdir", name)
-        monkeypatch.setenv("TMPDIR", name)
-        yield Path(name)
-        ours = psutil.Process().children(recursive=True)
-        assert [p.pid for p in ours if p.is_running() and "robot_agent" in " ".join(p.cmdline())] == []
-        assert list(Path(name).glob("odour-*")) == []
+    with folder_left_clean(monkeypatch) as folder:
+        yield folder
 
 
 def test_three_robots_find_the_source_at_five_times_the_pace_of_the_clock():

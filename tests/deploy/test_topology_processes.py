@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from swarm_helpers import near_the_plume
+from swarm_helpers import folder_left_clean, near_the_plume
 
 from deploy.launch.swarm import SwarmRun
 from deploy.memory_run import run_in_memory
@@ -30,12 +29,9 @@ class Nobody:
 
 
 @pytest.fixture(autouse=True)
-def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A short temporary folder of the test's own, empty afterwards."""
-    with tempfile.TemporaryDirectory(prefix="t-") as name:
-        monkeypatch.setattr(tempfile, "tempdir", name)
-        yield
-        assert list(Path(name).glob("odour-*")) == []
+def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    with folder_left_clean(monkeypatch) as folder:
+        yield folder
 
 
 @pytest.mark.parametrize("graph", GRAPHS)
