@@ -153,7 +153,8 @@ class Agent:
                 around = Around(neighbours.fresh, others, neighbours.numbers)
                 self._decision.decide(own, group, self._detected, around)
                 late = self._rejoin.joined_at is not None
-                self._declaration.judge(own.t, self._decision.h, self._decision.certainty(), late)
+                decision = self._decision
+                self._declaration.judge(own.t, decision.h, decision.certainty(), late, decision.evidence_at())
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._planner.brief(own, self._decision, group, around)
                 self._plan = self._planner.plan(own, self._decision.h, lost)

@@ -4,7 +4,8 @@ Rules, for robot i at every decision; not of the thesis:
 1. Vote. Every robot tells where it holds the source to be, and the radius of its posterior there. A vote is named by its
    robot and that robot's time; the newest of each robot is passed on from neighbour to neighbour.
 2. Declare. i declares when its posterior has been narrower than `radius` for `hold` seconds while its estimate stayed within
-   `tolerance`, and the newest vote of every robot that it heard of within `window` is as narrow and within `tolerance` too.
+   `tolerance`, the odour was met again in that time, and the newest vote of every robot that it heard of within `window` is as
+   narrow and within `tolerance` too. (A plume that leaves just where a group happens to turn looks like one that begins there.)
    A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joined late has not seen what
    the others saw: it votes once it is sure itself, and holds nobody up before.
 3. Adopt. A declaration (when, by whom, where) is passed on. Of two the earlier one wins, then the one by the lower number,
@@ -69,13 +70,16 @@ class Declaration:
             if state.declared is not None:
                 self._adopt(state.declared)
 
-    def judge(self, t: float, estimate: Point, radius: float | None, late: bool = False) -> None:
+    def judge(
+        self, t: float, estimate: Point, radius: float | None, late: bool = False, smelt_at: float = inf
+    ) -> None:
         """At every decision: vote, and declare when all agree.
 
         Args:
             estimate: where this robot holds the source to be, m.
             radius: of its posterior there, m; None: it has none.
             late: this robot joined a swarm that was on its way.
+            smelt_at: when anybody met the odour last, as far as this robot knows, s.
         """
         if not self._on:
             return
@@ -91,7 +95,8 @@ class Declaration:
             self._since = inf
         elif paused or self._since == inf or hypot(x - self._anchor[0], y - self._anchor[1]) > p.tolerance:
             self._since, self._anchor = t, estimate
-        if t - self._since >= p.hold and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
+        rests = t - self._since >= p.hold and smelt_at > self._since
+        if rests and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
             self._adopt((t, self._me, x, y))
 
     def votes(self, tick: int, t: float) -> tuple[VoteRecord, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple, Protocol
 
 from protocol.messages import Reading, Shared
@@ -117,6 +118,10 @@ class Decision(Protocol):
     def certainty(self) -> float | None:
         """How well the position of the source is known: root of the trace of its covariance, m; None: it is not said."""
         return None
+
+    def evidence_at(self) -> float:
+        """When anybody met the odour last, as far as this robot knows, s; inf: it is not said."""
+        return inf
 
     def belief_map(self) -> BeliefMap | None:
         """Where the source may be, for whoever watches; None: there is no such map (yet). May be slow: ask rarely."""

@@ -21,6 +21,9 @@ from robot_agent.plume.flood import Flood
 from robot_agent.plume.map import EventMap
 from robot_agent.plume.posterior import posterior, spread
 
+PAUSE = 3  # decisions without a hit: the group had left the plume
+MANY = 256  # decisions with hits that are remembered, more than `forget` lets count
+
 
 class PlumeMapDecision(Decision):
     """One robot's events and map."""
@@ -37,6 +40,7 @@ class PlumeMapDecision(Decision):
         self._place: tuple[int, float, float] | None = None  # tick, own position with the reading's noise taken out
         self._posterior: Posterior | None = None
         self.smelt_at = NEVER  # the newest hit that was drawn, s; times of clocks far from one's own never get there
+        self._hits: set[int] = set()  # decisions at which somebody smelt something, of late
         self.wind: Point = (1.0, 0.0)  # unit vector, where the group's wind of late blows to
         self.state: Point = (0.0, 0.0)
         self.h: Point = (0.0, 0.0)
@@ -80,6 +84,16 @@ class PlumeMapDecision(Decision):
     def certainty(self) -> float | None:
         return spread(self._posterior) if self._posterior is not None else None
 
+    def evidence_at(self) -> float:
+        """The newest hit before which nobody had smelt anything for some seconds: the plume was left and met again."""
+        k = max(self._hits, default=0)
+        oldest = min(self._hits, default=0)
+        while k >= oldest:
+            if k in self._hits and self._hits.isdisjoint(range(k - PAUSE, k)):
+                return k * self._step
+            k -= 1
+        return NEVER
+
     def belief_map(self) -> BeliefMap | None:
         if self._posterior is None:
             return None
@@ -97,6 +111,9 @@ class PlumeMapDecision(Decision):
         self.chart.learn(key[0], event)
         if event.hit:
             self.smelt_at = max(self.smelt_at, key[0] * self._step)
+            self._hits.add(key[0])
+            if len(self._hits) > MANY:
+                self._hits = set(sorted(self._hits)[MANY // 2 :])
         latest = self._latest.get(event.robot)
         if latest is None or latest[0] < key[0]:
             self._latest[event.robot] = (key[0], event)

@@ -4,6 +4,7 @@ import pytest
 from swarm_helpers import near_the_plume
 
 from deploy.memory_run import MemorySwarm
+from protocol.scenario.load import load_scenario
 
 APART = 0.6  # m
 
@@ -116,3 +117,14 @@ def test_what_the_recorder_is_shown_is_a_map_of_the_arena():
     best = levels.index(255)
     assert abs(x0 + (best % 100 + 0.5) * cell - decision.h[0]) < 30.0
     assert abs(y0 + (best // 100 + 0.5) * cell - decision.h[1]) < 10.0
+
+
+def test_a_plume_that_leaves_where_the_group_turns_is_not_taken_for_one_that_begins_there():
+    # 10 s after the plume swung away all held its last place for the source, 52 m downwind of it, and had declared it.
+    chosen = {"algorithm": "plume-map", "topology": "all", "case": 9, "seed": 41005, "wind.gain": 2.0, "max_time": 80.0,
+              "declaration.stop": "declared"}  # fmt: skip
+    swarm = MemorySwarm(load_scenario(None, overrides=[(name, value, "test") for name, value in chosen.items()]))
+    sure = []
+    world = play(swarm, lambda swarm: sure.append(swarm.robots[0].session.agent._decision.certainty()))
+    assert min(radius for radius in sure if radius is not None) < world.scenario.declaration.radius
+    assert swarm.session.ended == "time out"

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from judging_helpers import reading, view
 
+from protocol.messages import NEVER
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.decision.plume_map import PlumeMapDecision
@@ -266,3 +267,18 @@ def test_an_own_position_after_a_hang_is_the_reading_and_not_what_the_wheels_wou
     back = Own(reading(200, x=52.0), scenario.body, 0)
     decision.record(back)
     assert decision._place == (200, back.x, back.y)
+
+
+def test_evidence_is_a_hit_after_the_plume_was_left():
+    scenario = view(algorithm="plume-map", topology="line")
+    decision = PlumeMapDecision(scenario)
+
+    def smell(k, ppt):
+        decision.record(Own(reading(20 * k, ppt=ppt), scenario.body))
+        return decision.evidence_at()
+
+    assert smell(0, 0.0) == NEVER
+    assert smell(1, 9000.0) == 1.0
+    assert [smell(2, 9000.0), smell(3, 0.0), smell(4, 0.0), smell(5, 9000.0)] == [1.0] * 4, "two misses are no leaving"
+    assert [smell(6, 0.0), smell(7, 0.0), smell(8, 0.0)] == [1.0] * 3
+    assert [smell(9, 9000.0), smell(10, 9000.0)] == [9.0, 9.0]
