@@ -4,8 +4,8 @@ Rules, for robot i at every decision; not of the thesis:
 1. Vote. Every robot tells where it holds the source to be, and the radius of its posterior there. A vote is named by its
    robot and that robot's time; the newest of each robot is passed on from neighbour to neighbour.
 2. Declare. i declares when its posterior has been narrower than `radius` for `hold` seconds while its estimate stayed within
-   `tolerance`, the odour was met again in that time, and the newest vote of every robot that it heard of within `window` is as
-   narrow and within `tolerance` too. (A plume that leaves just where a group happens to turn looks like one that begins there.)
+   `tolerance`, the odour was met again in that time, and the newest vote of every robot that it heard of within `window` is
+   as narrow and within `tolerance` too. (A plume that leaves where a group turns looks like one that begins there.)
    A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joined late has not seen what
    the others saw: it votes once it is sure itself, and holds nobody up before.
 3. Adopt. A declaration (when, by whom, where) is passed on. Of two the earlier one wins, then the one by the lower number,
