@@ -17,7 +17,7 @@ still (it hung, or was too late) for longer than `window` has nobody's vote any 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import hypot, inf
 from typing import NamedTuple
 
@@ -71,7 +71,12 @@ class Declaration:
                 self._adopt(state.declared)
 
     def judge(
-        self, t: float, estimate: Point, radius: float | None, late: bool = False, smelt_at: float = inf
+        self,
+        t: float,
+        estimate: Point,
+        radius: float | None,
+        late: bool = False,
+        met_again_at: Callable[[], float] = lambda: inf,
     ) -> None:
         """At every decision: vote, and declare when all agree.
 
@@ -79,7 +84,7 @@ class Declaration:
             estimate: where this robot holds the source to be, m.
             radius: of its posterior there, m; None: it has none.
             late: this robot joined a swarm that was on its way.
-            smelt_at: when anybody met the odour last, as far as this robot knows, s.
+            met_again_at: tells when the odour was met again last, as far as this robot knows, s; asked when it matters.
         """
         if not self._on:
             return
@@ -95,7 +100,7 @@ class Declaration:
             self._since = inf
         elif paused or self._since == inf or hypot(x - self._anchor[0], y - self._anchor[1]) > p.tolerance:
             self._since, self._anchor = t, estimate
-        rests = t - self._since >= p.hold and smelt_at > self._since
+        rests = t - self._since >= p.hold and met_again_at() > self._since
         if rests and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
             self._adopt((t, self._me, x, y))
 

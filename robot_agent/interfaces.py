@@ -120,7 +120,7 @@ class Decision(Protocol):
         return None
 
     def evidence_at(self) -> float:
-        """When anybody met the odour last, as far as this robot knows, s; inf: it is not said."""
+        """When the odour was met again last, as far as this robot knows, s; inf: it is not said. May be slow."""
         return inf
 
     def belief_map(self) -> BeliefMap | None:

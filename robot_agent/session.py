@@ -15,6 +15,10 @@ from protocol.scenario.faults import HISTORY  # ticks that a state is kept, for 
 from robot_agent.agent import Agent
 from robot_agent.faults import false_sense
 
+# At these repetitions of a reading older states are told, too, and not each time: a neighbour that hangs takes nothing, and
+# a socket has room for some 200 of them.
+ALL_OF_THEM = (1, 10)
+
 
 class RobotSession:
     """Drives an `Agent` through the ticks of a run."""
@@ -28,6 +32,7 @@ class RobotSession:
         self._drive = drive
         self._states: dict[int, dict[int, Shared]] = {}  # tick -> neighbour -> its state
         self._said: dict[int, Shared] = {}  # tick -> what was told then, for as long as somebody may wait for it
+        self._repeated = 0  # how often this tick's reading came again
         self._hears: tuple[tuple[int, int], ...] = ()
         self._missing: set[tuple[int, int]] = set()
         self._gone: set[int] = set()  # neighbours that no link leads to now
@@ -48,6 +53,7 @@ class RobotSession:
         states.pop(tick - HISTORY, None)
         said = self._said
         said.pop(tick - HISTORY, None)
+        self._repeated = 0
         state = said[tick] = self._sense(reading)
         self._tell(state)
         self._hears = hears = reading.hears
@@ -104,8 +110,10 @@ class RobotSession:
 
     def _say_again(self) -> None:
         """A world that came back, or waits in vain, wants to hear this tick again; links may have come and gone."""
-        for state in self._said.values():
-            self._tell(state)
+        self._repeated += 1
+        for tick, state in self._said.items():
+            if tick == self.tick or self._repeated in ALL_OF_THEM:
+                self._tell(state)
         if self._answer is not None:
             self._drive(self._answer)
 

@@ -8,7 +8,7 @@ from swarm_helpers import near_the_plume
 
 from deploy.memory_run import MemorySwarm, run_in_memory
 from protocol.randomness import rng_for
-from protocol.scenario.faults import Delay, Hang
+from protocol.scenario.faults import HISTORY, Delay, Hang
 from world_server.outcome import outcome
 from world_server.stall import AGAIN, Stall
 
@@ -67,6 +67,21 @@ def test_a_robot_that_never_answers_is_done_without():
     assert waits > PATIENCE / AGAIN
     assert told.ended == "time out"
     assert any("robot 3 is done without: no answer for 10 s" in text for text in told.faults)
+
+
+def test_readings_that_come_again_and_again_fill_nobodys_socket():
+    swarm = MemorySwarm(near_the_plume(topology="ring", seed=5, max_time=10.0))
+    swarm.start()
+    while swarm.session.world.tick < 2 * HISTORY:
+        swarm.tick()
+    robot, told = swarm.robots[0], []
+    robot.pump()
+    robot.session._tell = told.append
+    reading = next(reading for reading in swarm.session._readings if reading.robot == 0)
+    for _ in range(round(PATIENCE / AGAIN)):
+        robot.session.take_reading(reading)
+    assert {state.tick for state in told} == set(range(HISTORY + 1, 2 * HISTORY + 1))
+    assert len(told) < 200
 
 
 def test_a_machine_that_was_asleep_costs_no_robot_its_place():

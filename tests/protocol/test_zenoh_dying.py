@@ -8,7 +8,7 @@ import threading
 from contextlib import suppress
 
 import pytest
-from zenoh_wires import DEADLINE, Wires, await_event, drive, echoed, talker, unix_only, until
+from zenoh_wires import DEADLINE, Wires, acquainted, await_event, drive, echoed, talker, unix_only, until
 
 from protocol.bus import Lost, Seen
 from protocol.endpoints import unix_endpoint
@@ -34,10 +34,7 @@ def test_a_killed_process_is_lost_and_may_come_back(wires: Wires) -> None:
 @pytest.mark.processes
 @unix_only
 def test_a_frozen_process_is_lost_and_seen_again_when_it_goes_on(wires: Wires) -> None:
-    bus, say = talker(wires)
-    child = wires.process("robot/1", "robot/9")
-    await_event(bus, Seen("robot/1"))
-    echoed(bus, say, 1)
+    bus, say, child = acquainted(wires)
     child.send_signal(signal.SIGSTOP)
     assert await_event(bus, Lost("robot/1")) == [Lost("robot/1")]
     child.send_signal(signal.SIGCONT)
@@ -87,10 +84,7 @@ def test_a_question_to_who_dies_or_never_answers_ends(wires: Wires) -> None:
 @pytest.mark.processes
 @unix_only
 def test_closing_does_not_wait_for_a_frozen_process(wires: Wires) -> None:
-    bus, say = talker(wires, lease_ms=60_000)
-    child = wires.process("robot/1", "robot/9")
-    await_event(bus, Seen("robot/1"))
-    echoed(bus, say, 1)
+    bus, _, child = acquainted(wires, lease_ms=60_000)
     child.send_signal(signal.SIGSTOP)
     closed = threading.Event()
     threading.Thread(target=lambda: (bus.close(), closed.set()), daemon=True).start()
@@ -102,10 +96,7 @@ def test_closing_does_not_wait_for_a_frozen_process(wires: Wires) -> None:
 @pytest.mark.processes
 @unix_only
 def test_a_second_process_of_the_same_name_waits_until_the_first_is_gone(wires: Wires) -> None:
-    bus, say = talker(wires)
-    first = wires.process("robot/1", "robot/9")
-    await_event(bus, Seen("robot/1"))
-    echoed(bus, say, 1)
+    bus, say, first = acquainted(wires)
     wires.endpoints["robot/1"] = unix_endpoint(wires.folder, "other")
     second = wires.process("robot/1", "robot/9")
     until((wires.folder / "other.sock").exists, "the second listens")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from protocol.bus import BusEvent, Delivery
+from protocol.bus import BusEvent, Delivery, Seen
 from protocol.endpoints import default_transport, free_tcp_endpoints, unix_endpoint
 from protocol.messages import Drive, Message
 from protocol.zenoh_bus import ZenohBus, token_of
@@ -128,3 +128,12 @@ def talker(wires: Wires, **options) -> tuple[ZenohBus, Callable[[Message], None]
     bus = wires.member("robot/9", **options)
     bus.subscribe("robot/*/drive", Drive)
     return bus, bus.publisher("robot/9/drive", reliable=True)
+
+
+def acquainted(wires: Wires, **options) -> tuple[ZenohBus, Callable[[Message], None], subprocess.Popen]:
+    """A talker and the process robot/1 that has echoed it once."""
+    bus, say = talker(wires, **options)
+    child = wires.process("robot/1", "robot/9")
+    await_event(bus, Seen("robot/1"))
+    echoed(bus, say, 1)
+    return bus, say, child
