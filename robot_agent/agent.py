@@ -154,7 +154,7 @@ class Agent:
                 self._decision.decide(own, group, self._detected, around)
                 late = self._rejoin.joined_at is not None
                 decision = self._decision
-                self._declaration.judge(own.t, decision.h, decision.certainty(), late, decision.evidence_at)
+                self._declaration.judge(own.t, decision.h, decision.certainty(), late, decision.meetings)
                 lost = group.lost(own.t, self._s.decision.lost_after)
                 self._planner.brief(own, self._decision, group, around)
                 self._plan = self._planner.plan(own, self._decision.h, lost)
@@ -224,5 +224,3 @@ class Agent:
             self._decision.begin(own)
             if self._rejoin.joined_at is not None:
                 self._decision.rejoin(own, self._neighbours.fresh)
-
-

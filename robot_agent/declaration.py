@@ -4,8 +4,9 @@ Rules, for robot i at every decision; not of the thesis:
 1. Vote. Every robot tells where it holds the source to be, and the radius of its posterior there. A vote is named by its
    robot and that robot's time; the newest of each robot is passed on from neighbour to neighbour.
 2. Declare. i declares when its posterior has been narrower than `radius` for `hold` seconds while its estimate stayed within
-   `tolerance`, the odour was met again in that time, and the newest vote of every robot that it heard of within `window` is
-   as narrow and within `tolerance` too. (A plume that leaves where a group turns looks like one that begins there.)
+   `tolerance`, the odour was met again there in that time, `meetings` times since the estimate is within 2 `tolerance`, and
+   the newest vote of every robot that it heard of within `window` is as narrow and within `tolerance` too. (A plume that
+   leaves where a group turns looks like one that begins there: robot_agent/plume/evidence.py.)
    A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joined late has not seen what
    the others saw: it votes once it is sure itself, and holds nobody up before.
 3. Adopt. A declaration (when, by whom, where) is passed on. Of two the earlier one wins, then the one by the lower number,
@@ -18,13 +19,13 @@ still (it hung, or was too late) for longer than `window` has nobody's vote any 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from math import hypot, inf
+from math import dist, inf
 from typing import NamedTuple
 
 from protocol.messages import DeclaredRecord, Shared, VoteRecord
 from protocol.scenario import RobotScenario
+from robot_agent.interfaces import OFTEN, Point
 
-Point = tuple[float, float]
 UNSURE = -1.0  # radius in the vote of a robot that has no posterior
 
 
@@ -41,8 +42,8 @@ class Vote(NamedTuple):
 class Declaration:
     """One robot's part in it."""
 
-    __slots__ = ("_anchor", "_arena", "_judged_at", "_me", "_on", "_p", "_robots", "_since", "_ticks_per_telling",
-                 "_told_in", "_votes", "made")  # fmt: skip
+    __slots__ = ("_anchor", "_arena", "_judged_at", "_me", "_on", "_p", "_robots", "_settled", "_since", "_stayed",
+                 "_ticks_per_telling", "_told_in", "_votes", "made")  # fmt: skip
 
     def __init__(self, scenario: RobotScenario) -> None:
         self._p = scenario.declaration
@@ -54,6 +55,8 @@ class Declaration:
         self._votes: dict[int, Vote] = {}
         self._since = inf  # when my posterior became narrow and my estimate came to rest, s
         self._anchor: Point = (0.0, 0.0)  # and where that was
+        self._settled = inf  # when my estimate came near to where it is, narrow or not, s
+        self._stayed: Point = (0.0, 0.0)  # and where that was
         self._judged_at = -inf  # s
         self._told_in = -1  # number of the period in which the votes were told last
         self.made: DeclaredRecord | None = None  # to be told
@@ -76,7 +79,7 @@ class Declaration:
         estimate: Point,
         radius: float | None,
         late: bool = False,
-        met_again_at: Callable[[], float] = lambda: inf,
+        meetings: Callable[[float, Point], int] = lambda since, place: OFTEN,
     ) -> None:
         """At every decision: vote, and declare when all agree.
 
@@ -84,25 +87,29 @@ class Declaration:
             estimate: where this robot holds the source to be, m.
             radius: of its posterior there, m; None: it has none.
             late: this robot joined a swarm that was on its way.
-            met_again_at: tells when the odour was met again last, as far as this robot knows, s; asked when it matters.
+            meetings: tells how often the odour was met again since then, s, as a source at a place, m, explains it; asked
+                when it matters.
         """
         if not self._on:
             return
         p, (x, y) = self._p, estimate
         if late and (radius is None or radius > p.radius):
             self._votes.pop(self._me, None)
-            self._since, self._judged_at = inf, t
+            self._since, self._settled, self._judged_at = inf, inf, t
             return
         self._votes[self._me] = Vote(t, x, y, UNSURE if radius is None else radius, t)
         paused = t - self._judged_at > p.window
         self._judged_at = t
         if radius is None or radius > p.radius:
             self._since = inf
-        elif paused or self._since == inf or hypot(x - self._anchor[0], y - self._anchor[1]) > p.tolerance:
+        elif paused or self._since == inf or dist(estimate, self._anchor) > p.tolerance:
             self._since, self._anchor = t, estimate
-        rests = t - self._since >= p.hold and met_again_at() > self._since
-        if rests and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
-            self._adopt((t, self._me, x, y))
+        if paused or self._settled == inf or dist(estimate, self._stayed) > 2.0 * p.tolerance:
+            self._settled, self._stayed = t, estimate
+        if t - self._since >= p.hold and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
+            of_late = min(1, p.meetings)
+            if meetings(self._settled, estimate) >= p.meetings and meetings(self._since, estimate) >= of_late:
+                self._adopt((t, self._me, x, y))
 
     def votes(self, tick: int, t: float) -> tuple[VoteRecord, ...]:
         """The votes to tell at this tick: the newest of every robot that was heard of lately, mine among them.
@@ -119,7 +126,7 @@ class Declaration:
         return {robot: vote for robot, vote in self._votes.items() if t - vote.heard_at <= self._p.window}
 
     def _agrees(self, vote: Vote, estimate: Point) -> bool:
-        near = hypot(vote.x - estimate[0], vote.y - estimate[1]) <= self._p.tolerance
+        near = dist((vote.x, vote.y), estimate) <= self._p.tolerance
         return near and 0.0 <= vote.radius <= self._p.radius
 
     def _adopt(self, record: DeclaredRecord) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import inf
 from typing import NamedTuple, Protocol
 
 from protocol.messages import Reading, Shared
@@ -25,7 +24,6 @@ BeliefMap = tuple[float, float, float, int, bytes]
 Fresh = Sequence[tuple[float, Shared]]  # (a_ij, state) of the neighbours that count now
 
 
-
 class Posterior(NamedTuple):
     """Where a decision takes the source to be: mean, m, and covariance, m^2."""
 
@@ -36,6 +34,7 @@ class Posterior(NamedTuple):
     yy: float
 
 
+OFTEN = 1 << 30  # more meetings than anybody asks for
 SEARCH, TRACE, LOST = "search", "trace", "lost"
 
 
@@ -119,9 +118,12 @@ class Decision(Protocol):
         """How well the position of the source is known: root of the trace of its covariance, m; None: it is not said."""
         return None
 
-    def evidence_at(self) -> float:
-        """When the odour was met again last, as far as this robot knows, s; inf: it is not said. May be slow."""
-        return inf
+    def meetings(self, since: float, place: Point) -> int:
+        """How often the odour was met again since then (s), as a source at `place` (m) explains it. May be slow.
+
+        Algorithms that cannot say have met it often enough.
+        """
+        return OFTEN
 
     def belief_map(self) -> BeliefMap | None:
         """Where the source may be, for whoever watches; None: there is no such map (yet). May be slow: ask rarely."""

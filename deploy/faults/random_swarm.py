@@ -107,5 +107,10 @@ def _stop(draws: Draws) -> Values:
     """Of an algorithm that can declare: half of the runs end by the swarm's own word, some of these easily."""
     if draws.uniform() < 0.4:
         return {}
-    easily: Values = {"declaration.radius": 20.0, "declaration.hold": 0.2, "declaration.tolerance": 20.0}
+    easily: Values = {
+        "declaration.radius": 20.0,
+        "declaration.hold": 0.2,
+        "declaration.tolerance": 20.0,
+        "declaration.meetings": 0,
+    }
     return {"declaration.stop": "declared", **(easily if draws.uniform() < 0.7 else {})}

@@ -7,7 +7,7 @@ its own map, once; h^ic is the mean of the posterior. Nothing is averaged and no
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import hypot, sqrt
+from math import exp, hypot, sqrt
 
 from protocol.messages import NEVER, Reading, Shared
 from protocol.scenario import RobotScenario
@@ -17,12 +17,12 @@ from robot_agent.interfaces import Around, BeliefMap, Decision, Point, Posterior
 from robot_agent.kalman import Estimate
 from robot_agent.plume.backtrace import WindPast
 from robot_agent.plume.events import LAGS, Event, Key, pack, unpack
+from robot_agent.plume.evidence import Evidence
 from robot_agent.plume.flood import Flood
 from robot_agent.plume.map import EventMap
 from robot_agent.plume.posterior import posterior, spread
 
-PAUSE = 3  # decisions without a hit: the group had left the plume
-MANY = 256  # decisions with hits that are remembered, more than `forget` lets count
+SHOWN = 2  # one cell of so many along each side is shown: colours, not sums
 
 
 class PlumeMapDecision(Decision):
@@ -40,7 +40,7 @@ class PlumeMapDecision(Decision):
         self._place: tuple[int, float, float] | None = None  # tick, own position with the reading's noise taken out
         self._posterior: Posterior | None = None
         self.smelt_at = NEVER  # the newest hit that was drawn, s; times of clocks far from one's own never get there
-        self._hits: set[int] = set()  # decisions at which somebody smelt something, of late
+        self._evidence = Evidence(self._p)
         self.wind: Point = (1.0, 0.0)  # unit vector, where the group's wind of late blows to
         self.state: Point = (0.0, 0.0)
         self.h: Point = (0.0, 0.0)
@@ -84,36 +84,25 @@ class PlumeMapDecision(Decision):
     def certainty(self) -> float | None:
         return spread(self._posterior) if self._posterior is not None else None
 
-    def evidence_at(self) -> float:
-        """The newest hit before which nobody had smelt anything for some seconds: the plume was left and met again."""
-        k = max(self._hits, default=0)
-        oldest = min(self._hits, default=0)
-        while k >= oldest:
-            if k in self._hits and self._hits.isdisjoint(range(k - PAUSE, k)):
-                return k * self._step
-            k -= 1
-        return NEVER
+    def meetings(self, since: float, place: Point) -> int:
+        return self._evidence.meetings(since / self._step, *place)
 
     def belief_map(self) -> BeliefMap | None:
         if self._posterior is None:
             return None
         chart = self.chart
-        top, scale = max(chart.M), chart.scale()
-        grid = bytes(
-            round(255 * 2.718281828459045 ** (0.5 * scale * (chart.M[i * chart.ny + j] - top)))
-            for j in range(chart.ny)
-            for i in range(chart.nx)
-        )
-        return chart.x0, chart.y0, chart.cell, chart.ny, grid
+        xs, ys = range(0, chart.nx, SHOWN), range(0, chart.ny, SHOWN)
+        rows = chart.window(xs, ys)
+        top, half = max(map(max, rows)), 0.5 * chart.scale()
+        grid = bytes(round(255 * exp(half * (m - top))) for column in zip(*rows, strict=True) for m in column)
+        return chart.x0, chart.y0, SHOWN * chart.cell, len(ys), grid
 
     def _learn(self, key: Key, record: bytes) -> None:
         event = unpack(record, self._s.arena)
         self.chart.learn(key[0], event)
         if event.hit:
             self.smelt_at = max(self.smelt_at, key[0] * self._step)
-            self._hits.add(key[0])
-            if len(self._hits) > MANY:
-                self._hits = set(sorted(self._hits)[MANY // 2 :])
+            self._evidence.add(key[0], event)
         latest = self._latest.get(event.robot)
         if latest is None or latest[0] < key[0]:
             self._latest[event.robot] = (key[0], event)

@@ -3,7 +3,7 @@
 The plume is smelt within r of its middle line, and where that runs is uncertain by s. A source that the way passes at the
 lateral distance d, lag q before the event, is smelt with the probability
     P = p_m (Phi((r - d) / s) - Phi((-r - d) / s)),    s^2 = sigma^2 - r^2 / 3
-(sigma(q), see `robot_agent.plume.map`, is the deviation of both together: r^2 / 3 is the variance of a place somewhere
+(sigma(q), see `robot_agent.plume.width`, is the deviation of both together: r^2 / 3 is the variance of a place somewhere
 within r). By Bayes' rule the event adds to the logarithm of the likelihood
     hit:   b_d log(1 + (1 - p_fa) P / p_fa)
     miss:  b_n log(1 - P) / (1 + q / tau_c)
@@ -15,16 +15,16 @@ is what makes maps equal to the bit.
 
 from __future__ import annotations
 
-from math import erf, log, sqrt
+from math import log
 
 from protocol.scenario.laws import PlumeMap
+from robot_agent.plume.width import smelt
 
 ONE = 1 << 12  # a nat
 STEPS = 12  # entries per unit of z
 REACH = 2.75  # sigmas
 WIDTH = int(REACH * STEPS)
 LADDER = 1.06  # ratio of neighbouring sigmas
-EDGE = 0.03  # m: the least s
 RUNGS = 60  # the widest is sigma_0 1.06^59 = 31 sigma_0
 LEVELS = 8
 SHARP = 16  # rungs: 1.06^16 = 2.5 sigma_0
@@ -68,10 +68,9 @@ class Likelihood:
         One more at the end is for a z that rounding has carried there.
         """
         row = []
-        s = sqrt(2.0 * max(sigma**2 - p.reach**2 / 3.0, EDGE**2))
         for n in range(2 * WIDTH + 1):
             z = (n + 0.5 - WIDTH) / STEPS
-            P = share * p.detect * 0.5 * (erf((p.reach - z * sigma) / s) + erf((p.reach + z * sigma) / s))
+            P = share * smelt(z * sigma, sigma**2, p)
             gain = p.hit * log(1.0 + (1.0 - p.false) * P / p.false) if hit else p.miss * log(1.0 - P)
             row.append(round(ONE * gain))
         return tuple(row)

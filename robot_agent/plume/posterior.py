@@ -1,38 +1,39 @@
 """Mean and spread of where the source may be, below the size of a cell where the map is sharp.
 
-Rules: a function of the map alone. A wide posterior is summed over every fourth cell of every second row. Where the
-spread is a few cells, each cell that matters is divided into 4 x 4 parts, with the logarithm between the middles of cells
-by the parabola through three of them: the map is smooth on that scale, for the way of the air has a width, and the mean
-is no longer bound to the middles of cells.
+Rules: a function of the map alone. A wide posterior is summed over a sample of every coarse cell, another one over the fine
+cells of the box that holds what counts. Where the spread is a few cells, each cell that matters is divided into 3 x 3
+parts, with the logarithm between the middles of cells by the parabola through three of them: the map is smooth on that
+scale, for the way of the air has a width, and the mean is not bound to the middles of cells.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import exp, sqrt
 
 from robot_agent.interfaces import Posterior
-from robot_agent.plume.map import EventMap
+from robot_agent.plume.map import COARSE, EventMap
 
 CUT = 9.0  # nats below the best cell: no longer counted
-MANY = 60  # cells of the coarse sum: as many are a wide posterior
+BETWEEN = 30.0  # nats below the best sample: the best cell lies between samples, and may be here
+MANY = 30  # samples of equal weight: as many tell a posterior
+LARGE = 400  # cells of a box: of a larger one every second line across it, every third, ... is taken,
+SMALLER = 0.7  # and it is made smaller as long as it becomes so by this,
+BOTH = 4.0  # deviations to both sides of the mean
 SHARP = 3.0  # cells: a smaller spread is looked at more closely
-PARTS = (-0.375, -0.125, 0.125, 0.375)
+PARTS = (-1.0 / 3.0, 0.0, 1.0 / 3.0)
 
 Moments = tuple[float, float, float, float, float]  # mean x, y, covariance xx, xy, yy, in cells
+Line = tuple[int, Sequence[int], Sequence[int]]  # i, the j of its cells, their values
 
 
 def posterior(chart: EventMap) -> Posterior:
     """Moments of exp(L), normalised."""
     scale = chart.scale()
-    all_over = _Window(chart, range(0, chart.nx, 2), range(0, chart.ny, 2), scale)
-    found, count = all_over.moments(2)
-    if count < MANY:
-        (x, y, xx, _, yy), _ = all_over.moments(1)
-        near = _about(x, 5.0 * sqrt(xx) + 4.0, chart.nx), _about(y, 5.0 * sqrt(yy) + 4.0, chart.ny)
-        found, _ = _Window(chart, *near, scale).moments(1)
-        if found[2] + found[4] < SHARP**2:
-            found = _fine(chart, found, scale)
+    samples = chart.sample()
+    found, many = _sum(samples, scale)
+    if many < MANY:
+        found = _closely(chart, samples, scale)
     x, y, xx, xy, yy = found
     c = chart.cell
     return Posterior(chart.x0 + (x + 0.5) * c, chart.y0 + (y + 0.5) * c, xx * c * c, xy * c * c, yy * c * c)
@@ -43,84 +44,105 @@ def spread(p: Posterior) -> float:
     return sqrt(max(0.0, p.xx + p.yy))
 
 
-def _about(middle: float, reach: float, n: int) -> range:
-    """Cells of 0 ... n - 1 within `reach` of `middle`."""
-    return range(max(0, int(middle - reach)), min(n, int(middle + reach) + 2))
+def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
+    """Over the fine cells of the box that holds what counts."""
+    rows = [row for _, _, row in samples]
+    by_i = list(zip(map(max, rows), (i for i, _, _ in samples), strict=True))
+    by_j = list(zip(map(max, *rows), samples[0][1], strict=True))
+
+    def box(floor: int, i: int, j: int) -> tuple[range, range]:
+        """About all samples above `floor`, and about the cell (i, j)."""
+        xs, ys = [i], [j]
+        xs += [i for m, i in by_i if m > floor]
+        ys += [j for m, j in by_j if m > floor]
+        return _box(min(xs), max(xs), chart.nx), _box(min(ys), max(ys), chart.ny)
+
+    peak, i = max(by_i)
+    _, i, j = chart.summit(*box(peak - int(BETWEEN / scale), i, max(by_j)[1]))
+    near = _lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny))
+    peak, i, j = max((max(row), i, js[row.index(max(row))]) for i, js, row in near)
+    xs, ys = box(peak - int(CUT / scale), i, j)
+    while (every := len(xs) * len(ys) // LARGE + 1) > 1:
+        thin = (xs[::every], ys) if len(xs) > len(ys) else (xs, ys[::every])
+        found, _ = _sum(_lines(chart, *thin), scale)
+        x, y, xx, _, yy = found
+        dx, dy = BOTH * sqrt(xx), BOTH * sqrt(yy)
+        us = _box(max(min(int(x - dx), i), xs[0]), min(max(int(x + dx), i), xs[-1]), chart.nx)
+        vs = _box(max(min(int(y - dy), j), ys[0]), min(max(int(y + dy), j), ys[-1]), chart.ny)
+        if len(us) * len(vs) > SMALLER * len(xs) * len(ys):
+            if xx + yy > (2 * every) ** 2 or every > COARSE:
+                return found
+            break
+        xs, ys = us, vs
+    lines = _lines(chart, xs, ys)
+    found, _ = _sum(lines, scale)
+    return _fine(lines, scale) if found[2] + found[4] < SHARP**2 else found
 
 
-class _Window:
-    """The cells (i, j) with i in `xs` and j in `ys`."""
-
-    def __init__(self, chart: EventMap, xs: range, ys: range, scale: float) -> None:
-        M, ny = chart.M, chart.ny
-        self._xs, self._scale = xs, scale
-        self._rows = [M[i * ny + ys.start : i * ny + ys.stop : ys.step] for i in xs]
-        self._tops = list(map(max, self._rows))
-        self._top = max(self._tops)
-        self._floor = self._top - int(CUT / scale)
-        self._columns = tuple(map(float, ys))
-
-    def moments(self, step: int) -> tuple[Moments, int]:
-        """Over every `step`th cell of each row, other ones from row to row; and how many of them counted."""
-        top, floor, scale = self._top, self._floor, self._scale
-        columns = [self._columns[turn::step] for turn in range(step)]
-        sums: list[tuple[int, float, float, float]] = []
-        blank: dict[tuple[int, int], tuple[float, float, float]] = {}  # rows that no event has touched are all the same
-        count = turn = 0
-        for i, row, highest in zip(self._xs, self._rows, self._tops, strict=True):
-            turn = (turn + 1) % step
-            if highest <= floor:
-                continue
-            if row[0] == highest and row.count(highest) == len(row):
-                if (highest, turn) not in blank:
-                    blank[highest, turn] = _row(row[turn::step], columns[turn], top, floor, scale)[:3]
-                sums.append((i, *blank[highest, turn]))
-                count += len(columns[turn])
-            else:
-                w, wy, wyy, n = _row(row[turn::step], columns[turn], top, floor, scale)
-                sums.append((i, w, wy, wyy))
-                count += n
-        return _moments(sums), count
+def _box(low: int, high: int, n: int) -> range:
+    """Cells of 0 ... n - 1 that are no further outside than a coarse cell."""
+    return range(max(0, low - COARSE), min(n, high + COARSE + 1))
 
 
-def _row(
-    row: Sequence[int], columns: Sequence[float], top: int, floor: int, scale: float
-) -> tuple[float, float, float, int]:
-    """Sums of w, w y, w y^2 of a row, and how many cells counted."""
-    w = wy = wyy = 0.0
-    count = 0
-    for m, y in zip(row, columns, strict=True):
-        if m > floor:
-            weight = exp((m - top) * scale)
-            w += weight
-            weight *= y
-            wy += weight
-            wyy += weight * y
-            count += 1
-    return w, wy, wyy, count
+def _lines(chart: EventMap, xs: range, ys: range) -> list[Line]:
+    return [(i, ys, row) for i, row in zip(xs, chart.window(xs, ys), strict=True)]
 
 
-def _fine(chart: EventMap, rough: Moments, scale: float) -> Moments:
-    """In parts of cells, around the rough mean."""
-    M, nx, ny = chart.M, chart.nx, chart.ny
-    reach = 4.0 * SHARP
-    xs, ys = _about(rough[0], reach, nx), _about(rough[1], reach, ny)
-    rows = [M[i * ny + ys.start : i * ny + ys.stop] for i in xs]
-    tops = list(map(max, rows))
+def _sum(lines: Iterable[Line], scale: float) -> tuple[Moments, float]:
+    """Moments over the cells of lines, and of how many cells of equal weight they are: (sum w)^2 / sum w^2."""
+    tops = [max(row) for _, _, row in lines]
     top = max(tops)
     floor = top - int(CUT / scale)
     sums: list[tuple[float, float, float, float]] = []
-    for i, row, highest in zip(xs, rows, tops, strict=True):
+    blank: dict[tuple[int, int], tuple[float, float, float, float]] = {}  # lines no event has touched are all the same
+    total = squares = 0.0
+    for (i, js, row), highest in zip(lines, tops, strict=True):
         if highest <= floor:
             continue
-        for j, m in zip(ys, row, strict=True):
+        if row[0] == highest and row.count(highest) == len(row):
+            kind = highest, js[0]
+            if kind not in blank:
+                blank[kind] = _line(js, row, top, floor, scale)
+            w, wy, wyy, ww = blank[kind]
+        else:
+            w, wy, wyy, ww = _line(js, row, top, floor, scale)
+        sums.append((i, w, wy, wyy))
+        total += w
+        squares += ww
+    return _moments(sums), total * total / squares
+
+
+def _line(js: Sequence[int], row: Sequence[int], top: int, floor: int, scale: float) -> tuple[float, float, float, float]:
+    """Sums of w, w y, w y^2 and w^2."""
+    w = wy = wyy = ww = 0.0
+    for y, m in zip(js, row, strict=True):
+        if m > floor:
+            weight = exp((m - top) * scale)
+            w += weight
+            ww += weight * weight
+            weight *= y
+            wy += weight
+            wyy += weight * y
+    return w, wy, wyy, ww
+
+
+def _fine(lines: Sequence[Line], scale: float) -> Moments:
+    """In parts of cells."""
+    top = max(max(row) for _, _, row in lines)
+    floor = top - int(CUT / scale)
+    last, end = len(lines) - 1, len(lines[0][1]) - 1
+    sums: list[tuple[float, float, float, float]] = []
+    for n, (i, js, row) in enumerate(lines):
+        if max(row) <= floor:
+            continue
+        before, after = lines[max(n - 1, 0)][2], lines[min(n + 1, last)][2]
+        for k, (j, m) in enumerate(zip(js, row, strict=True)):
             if m <= floor:
                 continue
-            n = i * ny + j
             here = (m - top) * scale
-            left, right = _slopes(M, n, ny if 0 < i < nx - 1 else 0, scale)
-            low, high = _slopes(M, n, 1 if 0 < j < ny - 1 else 0, scale)
-            # exp(a + b) = exp(a) exp(b): 4 + 4 exponentials a cell
+            left, right = _slopes(before[k], m, after[k], scale) if 0 < n < last else (0.0, 0.0)
+            low, high = _slopes(row[k - 1], m, row[k + 1], scale) if 0 < k < end else (0.0, 0.0)
+            # exp(a + b) = exp(a) exp(b): 3 + 3 exponentials a cell
             w0 = w1 = w2 = 0.0
             for v in PARTS:
                 w, y = exp(low * v + high * v * v), j + v
@@ -133,16 +155,13 @@ def _fine(chart: EventMap, rough: Moments, scale: float) -> Moments:
     return _moments(sums)
 
 
-def _slopes(M: Sequence[int], n: int, stride: int, scale: float) -> tuple[float, float]:
+def _slopes(before: int, here: int, after: int, scale: float) -> tuple[float, float]:
     """Slope and half the curvature of L at a cell, per cell."""
-    if stride == 0:
-        return 0.0, 0.0
-    before, here, after = M[n - stride], M[n], M[n + stride]
     return 0.5 * (after - before) * scale, 0.5 * (after - 2 * here + before) * scale
 
 
 def _moments(sums: Sequence[tuple[float, float, float, float]]) -> Moments:
-    """Of rows, each as its x and its sums of w, w y, w y^2."""
+    """Of lines, each as its x and its sums of w, w y, w y^2."""
     total = x = y = xx = xy = yy = 0.0
     for u, w, wy, wyy in sums:
         total += w
@@ -151,7 +170,5 @@ def _moments(sums: Sequence[tuple[float, float, float, float]]) -> Moments:
         xx += w * u * u
         xy += wy * u
         yy += wyy
-    if total == 0.0:  # the few that count lie between those that were looked at
-        return 0.0, 0.0, 0.0, 0.0, 0.0
     x, y = x / total, y / total
     return x, y, max(0.0, xx / total - x * x), xy / total - x * y, max(0.0, yy / total - y * y)

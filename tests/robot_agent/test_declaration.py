@@ -107,9 +107,9 @@ def test_an_estimate_that_wanders_is_not_declared() -> None:
 def test_a_place_is_not_declared_before_the_odour_was_met_again_there() -> None:
     (who,) = group(1)
     for t in range(60):
-        who.judge(float(t), HERE, 0.1, met_again_at=lambda: 0.0)
+        who.judge(float(t), HERE, 0.1, meetings=lambda since, place: P.meetings - 1)
     assert who.made is None
-    who.judge(60.0, HERE, 0.1, met_again_at=lambda: 59.0)
+    who.judge(60.0, HERE, 0.1, meetings=lambda since, place: P.meetings)
     assert who.made == (60.0, 0, *HERE)
 
 

@@ -7,13 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from judging_helpers import reading, view
 
-from protocol.messages import NEVER
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.decision.plume_map import PlumeMapDecision
 from robot_agent.hand import Own
 from robot_agent.plume.backtrace import WindPast
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
+from robot_agent.plume.evidence import Evidence
 from robot_agent.plume.flood import Flood
 from robot_agent.plume.map import EventMap
 from robot_agent.plume.posterior import posterior, spread
@@ -31,6 +31,10 @@ def chart_of(events):
     for k, bits in events:
         chart.learn(k, unpack(bits, ARENA))
     return chart
+
+
+def cells(chart):
+    return [*chart.fine.M, *chart.coarse.M]
 
 
 speeds = st.floats(-4.0, 4.0)
@@ -56,13 +60,13 @@ def test_the_same_events_give_the_same_map_to_the_bit_in_any_order(told, random)
     shuffled = list(told)
     random.shuffle(shuffled)
     chart = chart_of(shuffled)
-    assert chart.M == in_order.M
+    assert cells(chart) == cells(in_order)
     assert posterior(chart) == posterior(in_order)
 
 
 def test_an_event_that_comes_late_counts_as_if_it_had_come_in_time():
     early, late = (10, record(hit=True, y=3.0)), [(k, record(x=60.0 - k, y=1.0)) for k in range(11, 40)]
-    assert chart_of([early, *late]).M == chart_of([*late, early]).M
+    assert cells(chart_of([early, *late])) == cells(chart_of([*late, early]))
 
 
 @given(
@@ -115,7 +119,7 @@ def test_when_the_wind_has_just_turned_the_way_is_still_told():
 @given(st.binary(min_size=SIZE, max_size=SIZE), st.integers(0, 50))
 def test_any_bytes_are_some_event_and_the_map_takes_it(bits, k):
     chart = chart_of([(k, bits)])
-    assert all(isinstance(m, int) for m in chart.M)
+    assert all(isinstance(m, int) for m in cells(chart))
 
 
 def test_hits_and_misses_beside_each_other_say_where_the_plume_runs():
@@ -173,9 +177,7 @@ class Wires:
 
     def __init__(self, edges, window=12):
         self.edges = edges
-        self.robots = [
-            Flood(4, window, [j for a, j in edges if a == i], [a for a, j in edges if j == i]) for i in range(4)
-        ]
+        self.robots = [Flood(4, window, [j for a, j in edges if a == i], [a for a, j in edges if j == i]) for i in range(4)]
         self.sets = [set() for _ in range(4)]
         self.sent = 0
 
@@ -269,16 +271,43 @@ def test_an_own_position_after_a_hang_is_the_reading_and_not_what_the_wheels_wou
     assert decision._place == (200, back.x, back.y)
 
 
-def test_evidence_is_a_hit_after_the_plume_was_left():
+# What speaks for a place ----------------------------------------------------------------------------------------------
+
+
+def evidence_of(*hits):
+    evidence = Evidence(TABLE)
+    for k, x, y in hits:
+        evidence.add(k, unpack(record(hit=True, x=x, y=y, D=0.05), ARENA))
+    return evidence
+
+
+def test_a_meeting_is_a_hit_after_a_pause():
+    evidence = evidence_of((10, 42.0, 3.0), (11, 42.0, 3.0), (14, 42.0, 3.0), (20, 42.0, 3.0), (21, 42.0, 3.0))
+    assert evidence.meetings(0, 40.0, 3.0) == 2, "after 10 and 14 a hit came within three seconds"
+    assert evidence.meetings(10, 40.0, 3.0) == 1, "since then"
+    assert evidence.meetings(20, 40.0, 3.0) == 0
+
+
+def test_a_meeting_counts_for_a_place_that_explains_it():
+    evidence = evidence_of((10, 42.0, 3.0), (20, 42.0, 4.4), (30, 42.0, 3.0))
+    assert evidence.meetings(0, 40.0, 3.0) == 2, "the one 1.4 m beside it neither speaks for it nor against it"
+    assert evidence.meetings(0, 39.0, 3.0) == 2
+
+
+@pytest.mark.parametrize("where", [(42.0, 6.0), (36.0, 3.0)], ids=["beside", "upwind"])
+def test_a_hit_that_a_source_there_does_not_give_speaks_against_the_place(where):
+    evidence = evidence_of((10, 42.0, 3.0), (20, *where), (30, 42.0, 3.0))
+    assert evidence.meetings(0, 40.0, 3.0) == 1, "only the one after it"
+
+
+def test_only_so_many_hits_are_kept():
+    evidence = evidence_of(*((10 * k, 42.0, 3.0) for k in range(1000)))
+    assert 128 <= evidence.meetings(-1, 40.0, 3.0) <= 256
+
+
+def test_a_decision_tells_the_meetings_of_which_it_knows():
     scenario = view(algorithm="plume-map", topology="line")
     decision = PlumeMapDecision(scenario)
-
-    def smell(k, ppt):
+    for k, ppt in enumerate((0.0, 9000.0, 9000.0, 0.0, 0.0, 0.0, 9000.0, 0.0, 0.0, 0.0)):
         decision.record(Own(reading(20 * k, ppt=ppt), scenario.body))
-        return decision.evidence_at()
-
-    assert smell(0, 0.0) == NEVER
-    assert smell(1, 9000.0) == 1.0
-    assert [smell(2, 9000.0), smell(3, 0.0), smell(4, 0.0), smell(5, 9000.0)] == [1.0] * 4, "two misses are no leaving"
-    assert [smell(6, 0.0), smell(7, 0.0), smell(8, 0.0)] == [1.0] * 3
-    assert [smell(9, 9000.0), smell(10, 9000.0)] == [9.0, 9.0]
+    assert [decision.meetings(since, (50.0, 0.0)) for since in (0.0, 1.0, 6.0)] == [2, 1, 0]
