@@ -8,7 +8,7 @@ scale, for the way of the air has a width, and the mean is not bound to the midd
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import exp, sqrt
 
 from robot_agent.interfaces import Posterior
@@ -45,10 +45,14 @@ def spread(p: Posterior) -> float:
 
 
 def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
-    """Over the fine cells of the box that holds what counts."""
+    """Over the fine cells of the box that holds what counts.
+
+    How high the best cell is says what counts, and it lies between samples: so it is looked for first, by the fine grid
+    alone where samples say that it may be, then with both grids about the place.
+    """
     rows = [row for _, _, row in samples]
     by_i = list(zip(map(max, rows), (i for i, _, _ in samples), strict=True))
-    by_j = list(zip(map(max, *rows), samples[0][1], strict=True))
+    by_j = list(zip(map(max, zip(*rows, strict=True)), samples[0][1], strict=True))
 
     def box(floor: int, i: int, j: int) -> tuple[range, range]:
         """About all samples above `floor`, and about the cell (i, j)."""
@@ -62,6 +66,7 @@ def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
     near = _lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny))
     peak, i, j = max((max(row), i, js[row.index(max(row))]) for i, js, row in near)
     xs, ys = box(peak - int(CUT / scale), i, j)
+    # A large box is looked at in every nth line across it, which tells where the smaller one is that holds nearly all.
     while (every := len(xs) * len(ys) // LARGE + 1) > 1:
         thin = (xs[::every], ys) if len(xs) > len(ys) else (xs, ys[::every])
         found, _ = _sum(_lines(chart, *thin), scale)
@@ -88,7 +93,7 @@ def _lines(chart: EventMap, xs: range, ys: range) -> list[Line]:
     return [(i, ys, row) for i, row in zip(xs, chart.window(xs, ys), strict=True)]
 
 
-def _sum(lines: Iterable[Line], scale: float) -> tuple[Moments, float]:
+def _sum(lines: Sequence[Line], scale: float) -> tuple[Moments, float]:
     """Moments over the cells of lines, and of how many cells of equal weight they are: (sum w)^2 / sum w^2."""
     tops = [max(row) for _, _, row in lines]
     top = max(tops)

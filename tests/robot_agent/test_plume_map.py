@@ -2,21 +2,24 @@
 
 from math import hypot
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from judging_helpers import reading, view
+from scipy.interpolate import RectBivariateSpline
 
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.decision.plume_map import PlumeMapDecision
 from robot_agent.hand import Own
+from robot_agent.interfaces import Posterior
 from robot_agent.plume.backtrace import WindPast
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
 from robot_agent.plume.evidence import Evidence
 from robot_agent.plume.flood import Flood
 from robot_agent.plume.map import EventMap
-from robot_agent.plume.posterior import posterior, spread
+from robot_agent.plume.posterior import CUT, posterior, spread
 
 ARENA = Arena()
 TABLE = PlumeMap()
@@ -130,21 +133,73 @@ def test_hits_and_misses_beside_each_other_say_where_the_plume_runs():
     assert p.x < 50.0  # upwind of the robots
 
 
-@pytest.mark.parametrize("speed", [0.71, 0.77, 0.83])
-@pytest.mark.parametrize("turn", [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7071, 0.7071), (-0.6, 0.8)])
-def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of_a_cell(turn, speed):
-    """Whatever way the wind blows, with the source on the corner of a cell. Hits weigh more than misses: it is placed some
-    0.3 m upwind, more or less with where each pass meets it between two samples."""
-    sx, sy = 40.0, 3.0
+def passes(sx, sy, turn, speed):
+    """A line of five that goes back and forth over a source at (sx, sy) for two minutes."""
     told = []
     for k in range(120):
         ahead = abs((speed * k) % 26.0 - 13.0) - 6.5  # metres downwind of the source
         for robot, side in enumerate((-3.85, -1.85, 0.15, 2.15, 4.15)):
             x, y = sx + ahead * turn[0] - side * turn[1], sy + ahead * turn[1] + side * turn[0]
             told.append((k, record(robot, abs(side) < 0.9 and ahead > -0.65, x, y, wind=turn, D=0.05)))
+    return told
+
+
+@pytest.mark.parametrize("source", [(40.5, 3.25), (40.125, 2.875), (40.5, 2.875)], ids=["corner", "middle", "edge"])
+@pytest.mark.parametrize("speed", [0.71, 0.77, 0.83])
+@pytest.mark.parametrize("turn", [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.7071, 0.7071), (-0.6, 0.8)])
+def test_a_line_that_passes_the_source_back_and_forth_knows_it_below_the_size_of_a_cell(turn, speed, source):
+    """Whatever way the wind blows, and wherever in its cell the source is. Hits weigh more than misses: it is placed some
+    0.3 m upwind, more or less with where each pass meets it between two samples."""
+    told = passes(*source, turn, speed)
     p = posterior(chart_of(told))
-    assert hypot(p.x - sx, p.y - sy) < 0.6
+    assert hypot(p.x - source[0], p.y - source[1]) < 0.65
     assert spread(p) < 0.7
+
+
+@pytest.mark.parametrize("turn", [(1.0, 0.0), (-0.6, 0.8)])
+def test_the_few_cells_that_are_looked_at_say_what_all_cells_say(turn):
+    """Nearly so, where the spread is below 4 m: of a wider one a sample is looked at."""
+    chart = EventMap(ARENA, TABLE, 1.0)
+    looked = 0
+    for n, (k, bits) in enumerate(passes(40.3, 2.9, turn, 0.77)):
+        chart.learn(k, unpack(bits, ARENA))
+        if n % 5 == 4:
+            p, q = posterior(chart), by_all_cells(chart)
+            if spread(q) < 4.0:
+                looked += 1
+                assert hypot(p.x - q.x, p.y - q.y) < 0.05 + 0.2 * spread(q)
+                assert spread(p) == pytest.approx(spread(q), rel=0.3, abs=0.05)
+    assert looked > 60
+
+
+def by_all_cells(chart):
+    """Mean and covariance over parts of all fine cells, with a spline through their middles."""
+    M = np.array(chart.window(range(chart.nx), range(chart.ny)), dtype=float) * chart.scale()
+    u, v = np.arange(0.0, chart.nx - 1, 0.25), np.arange(0.0, chart.ny - 1, 0.25)
+    w = RectBivariateSpline(np.arange(chart.nx), np.arange(chart.ny), M)(u, v)
+    w = np.where(w > w.max() - CUT, np.exp(w - w.max()), 0.0)
+    w /= w.sum()
+    x, y = chart.x0 + (u + 0.5) * chart.cell, chart.y0 + (v + 0.5) * chart.cell
+    mx, my = w.sum(1) @ x, w.sum(0) @ y
+    return Posterior(mx, my, w.sum(1) @ (x - mx) ** 2, (x - mx) @ w @ (y - my), w.sum(0) @ (y - my) ** 2)
+
+
+def test_between_the_middles_of_coarse_cells_the_map_is_linear():
+    chart = EventMap(ARENA, TABLE, 1.0)
+    far = chart.coarse
+    far.M[:] = [640 * a + 64 * b for a in range(far.nx) for b in range(far.ny)]
+    inside = range(2, chart.nx - 2), range(2, chart.ny - 2)
+    for i, row in zip(inside[0], chart.window(*inside), strict=True):
+        assert row == [160 * i + 16 * j - 264 for j in inside[1]]
+    corner = chart.window(range(0, 1), range(0, 1))
+    assert corner == [[0]], "at the edge as the nearest coarse cell"
+
+
+def test_an_arena_of_one_coarse_cell_will_do():
+    chart = EventMap(Arena(x_min=0.0, x_max=2.0, y_min=0.0, y_max=40.0), TABLE, 1.0)
+    for k in range(20):
+        chart.learn(k, unpack(pack(0, k % 2 == 0, 1.0, 20.0, 0.1, [(0.0, lag) for lag in LAGS], ARENA), ARENA))
+        assert 0.0 <= posterior(chart).x <= 3.0
 
 
 def test_far_events_are_forgotten():
