@@ -28,6 +28,7 @@ NEAR = 3  # stretches of the way (11 s) that every second miss is drawn along (t
 HALF = 2
 WIDE = 3.0  # m: as long as the way's deviation is below this
 COARSE = 4  # fine cells along the side of a coarse one
+SPOTS = (0, 2)  # fine lines of a coarse one that samples are taken on
 _BETWEEN = tuple((2 * (COARSE - n) - 1, 2 * n + 1) for n in range(COARSE))  # parts of 2 COARSE
 _BITS = 2 * (2 * COARSE - 1).bit_length()  # of (2 COARSE)^2
 
@@ -94,17 +95,20 @@ class EventMap:
         return 0.0, x + r * dx / length, y + r * dy / length
 
     def sample(self) -> list[tuple[int, range, list[int]]]:
-        """M about the middles of coarse cells.
+        """M at one fine cell of every coarse one; at other ones from line to line, so that no narrow ridge slips through.
 
         Returns:
-            i, the js, and the values of each row; of the fine cells (i, j) there.
+            i, the js, and the values of each line; of the fine cells (i, j) there.
         """
         fine, coarse, ny, far = self.fine.M, self.coarse.M, self.ny, self.coarse.ny
-        js = range(COARSE // 2, ny, COARSE)
-        return [
-            (i, js, list(map(add, coarse[a * far : (a + 1) * far], fine[i * ny + js.start : (i + 1) * ny : COARSE])))
-            for a, i in enumerate(range(COARSE // 2, self.nx, COARSE))
-        ]
+        lines = []
+        for a in range(self.coarse.nx):
+            for n in range(2):  # every other column of cells, two lines apart
+                i, first = COARSE * a + SPOTS[n], COARSE * n + (a + 2 * n) % COARSE
+                js = range(first, ny, 2 * COARSE)
+                row = map(add, coarse[a * far + n : (a + 1) * far : 2], fine[i * ny + first : (i + 1) * ny : 2 * COARSE])
+                lines.append((i, js, list(row)))
+        return [line for line in lines if line[2]]
 
     def summit(self, xs: range, ys: range) -> tuple[int, int, int]:
         """About what M is at the best of the fine cells (i, j) with i in `xs` and j in `ys`; i, j."""

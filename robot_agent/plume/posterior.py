@@ -50,19 +50,19 @@ def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
     How high the best cell is says what counts, and it lies between samples: so it is looked for first, by the fine grid
     alone where samples say that it may be, then with both grids about the place.
     """
-    rows = [row for _, _, row in samples]
-    by_i = list(zip(map(max, rows), (i for i, _, _ in samples), strict=True))
-    by_j = list(zip(map(max, zip(*rows, strict=True)), samples[0][1], strict=True))
+    tops = [max(row) for _, _, row in samples]
 
-    def box(floor: int, i: int, j: int) -> tuple[range, range]:
+    def box(floor: int, *cell: int) -> tuple[range, range]:
         """About all samples above `floor`, and about the cell (i, j)."""
-        xs, ys = [i], [j]
-        xs += [i for m, i in by_i if m > floor]
-        ys += [j for m, j in by_j if m > floor]
+        xs, ys = [*cell[:1]], [*cell[1:]]
+        for (i, js, row), top in zip(samples, tops, strict=True):
+            if top > floor:
+                there = [j for j, m in zip(js, row, strict=True) if m > floor]
+                xs.append(i)
+                ys += (there[0], there[-1])
         return _box(min(xs), max(xs), chart.nx), _box(min(ys), max(ys), chart.ny)
 
-    peak, i = max(by_i)
-    _, i, j = chart.summit(*box(peak - int(BETWEEN / scale), i, max(by_j)[1]))
+    _, i, j = chart.summit(*box(max(tops) - int(BETWEEN / scale)))
     near = _lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny))
     peak, i, j = max((max(row), i, js[row.index(max(row))]) for i, js, row in near)
     xs, ys = box(peak - int(CUT / scale), i, j)
