@@ -4,9 +4,9 @@ Rules, for robot i at every decision; not of the thesis:
 1. Vote. Every robot tells where it holds the source to be, and the radius of its posterior there. A vote is named by its
    robot and that robot's time; the newest of each robot is passed on from neighbour to neighbour.
 2. Declare. i declares when its posterior has been narrower than `radius` for `hold` seconds while its estimate stayed within
-   `tolerance`, the odour was met again there in that time, `meetings` times since the estimate is within 2 `tolerance`, and
-   the newest vote of every robot that it heard of within `window` is as narrow and within `tolerance` too. (A plume that
-   leaves where a group turns looks like one that begins there: robot_agent/plume/evidence.py.)
+   `tolerance`, the odour was met again there in that time, `meetings` times in the latest `recall` seconds, and the newest
+   vote of every robot that it heard of within `window` is as narrow and within `tolerance` too. (A plume that leaves where
+   a group turns looks like one that begins there: robot_agent/plume/evidence.py.)
    A robot that is dead, or beyond a broken link, is not heard of and holds nobody up; one that joined late has not seen what
    the others saw: it votes once it is sure itself, and holds nobody up before.
 3. Adopt. A declaration (when, by whom, where) is passed on. Of two the earlier one wins, then the one by the lower number,
@@ -42,8 +42,8 @@ class Vote(NamedTuple):
 class Declaration:
     """One robot's part in it."""
 
-    __slots__ = ("_anchor", "_arena", "_judged_at", "_me", "_on", "_p", "_robots", "_settled", "_since", "_stayed",
-                 "_ticks_per_telling", "_told_in", "_votes", "made")  # fmt: skip
+    __slots__ = ("_anchor", "_arena", "_judged_at", "_me", "_on", "_p", "_robots", "_since", "_ticks_per_telling",
+                 "_told_in", "_votes", "made")  # fmt: skip
 
     def __init__(self, scenario: RobotScenario) -> None:
         self._p = scenario.declaration
@@ -55,8 +55,6 @@ class Declaration:
         self._votes: dict[int, Vote] = {}
         self._since = inf  # when my posterior became narrow and my estimate came to rest, s
         self._anchor: Point = (0.0, 0.0)  # and where that was
-        self._settled = inf  # when my estimate came near to where it is, narrow or not, s
-        self._stayed: Point = (0.0, 0.0)  # and where that was
         self._judged_at = -inf  # s
         self._told_in = -1  # number of the period in which the votes were told last
         self.made: DeclaredRecord | None = None  # to be told
@@ -95,7 +93,7 @@ class Declaration:
         p, (x, y) = self._p, estimate
         if late and (radius is None or radius > p.radius):
             self._votes.pop(self._me, None)
-            self._since, self._settled, self._judged_at = inf, inf, t
+            self._since, self._judged_at = inf, t
             return
         self._votes[self._me] = Vote(t, x, y, UNSURE if radius is None else radius, t)
         paused = t - self._judged_at > p.window
@@ -104,11 +102,9 @@ class Declaration:
             self._since = inf
         elif paused or self._since == inf or dist(estimate, self._anchor) > p.tolerance:
             self._since, self._anchor = t, estimate
-        if paused or self._settled == inf or dist(estimate, self._stayed) > 2.0 * p.tolerance:
-            self._settled, self._stayed = t, estimate
         if t - self._since >= p.hold and all(self._agrees(vote, estimate) for vote in self._asked(t).values()):
             of_late = min(1, p.meetings)
-            if meetings(self._settled, estimate) >= p.meetings and meetings(self._since, estimate) >= of_late:
+            if meetings(t - p.recall, estimate) >= p.meetings and meetings(self._since, estimate) >= of_late:
                 self._adopt((t, self._me, x, y))
 
     def votes(self, tick: int, t: float) -> tuple[VoteRecord, ...]:

@@ -180,7 +180,8 @@ class Declaration(Table, frozen=True):
     stop: Literal["reached", "declared"] = "reached"  # what ends the run: a robot at the source, or the swarm's own word
     radius: Positive = 0.45  # a robot is sure when its posterior is this narrow, m
     hold: NonNegative = 5.0  # and has been for so long, s
-    meetings: Annotated[int, Meta(ge=0, le=20)] = 2  # and the odour was met again there so often, once of them since then
+    meetings: Annotated[int, Meta(ge=0, le=20)] = 2  # and the odour was met again there so often, once of them since then,
+    recall: Positive = 60.0  # all of them within so long, s
     tolerance: Positive = 0.5  # estimates so near to each other agree, m
     window: Positive = 10.0  # a robot not heard of for so long is not asked, s
     period: Positive = 0.2  # between two tellings of the votes, s

@@ -4,8 +4,9 @@ Hits in a row share one error: a group that drifts along in one body of odour ta
 the source is near, and is sure soon. What such a place does not do is to give odour again, after a pause, the way it should.
 
 A meeting is a hit before which nobody had smelt anything for `PAUSE` decisions. It counts for a place when a source there
-explains it (`robot_agent.plume.width.explains`). A hit that it does not explain at all contradicts it: what was before no
-longer counts.
+explains it (`robot_agent.plume.width.explains`) and the odour came from there within `NEAR`: further off a plume is met
+that begins elsewhere. A hit that a source there does not explain at all contradicts the place: what was before no longer
+counts.
 
 Rules: a function of the set of hits that are known, in whatever order they came.
 """
@@ -18,6 +19,7 @@ from robot_agent.plume.width import explains
 
 PAUSE = 3  # decisions without a hit: the group had left the plume
 MANY = 256  # decisions with hits that are remembered, more than `forget` lets count
+NEAR = 5.0  # s
 LIKELY = 0.3  # a source explains a hit from this P on. When a group is sure and right 99 of 100 hits have 0.33 and more,
 ODD = 0.1  # and next to none has less than this
 
@@ -36,12 +38,13 @@ class Evidence:
                 del self._hits[old]
 
     def meetings(self, since: float, x: float, y: float) -> int:
-        """How often the odour was met again after decision `since` as a source at (x, y) m explains it."""
+        """How often the odour was met again after decision `since`, near (x, y) m, as a source there explains it."""
         count = 0
         for k in sorted((k for k in self._hits if k > since), reverse=True):
-            chances = [explains(hit, x, y, self._p) for hit in self._hits[k]]
-            if min(chances) < ODD:
+            hits = self._hits[k]
+            if min(explains(hit, x, y, self._p) for hit in hits) < ODD:
                 break
-            if max(chances) >= LIKELY and self._hits.keys().isdisjoint(range(k - PAUSE, k)):
+            near = max(explains(hit, x, y, self._p, NEAR) for hit in hits)
+            if near >= LIKELY and self._hits.keys().isdisjoint(range(k - PAUSE, k)):
                 count += 1
         return count

@@ -32,11 +32,17 @@ def smelt(offset: float, variance: float, p: PlumeMap) -> float:
     return 0.5 * p.detect * (erf((p.reach - offset) / s) + erf((p.reach + offset) / s))
 
 
-def explains(event: Event, x: float, y: float, p: PlumeMap) -> float:
-    """P of the event for a source at (x, y) m: where the way passes it best; it is smelt a little upwind, too."""
+def explains(event: Event, x: float, y: float, p: PlumeMap, within: float = LAGS[-1]) -> float:
+    """P of the event for a source at (x, y) m: where the way passes it best; it is smelt a little upwind, too.
+
+    Args:
+        within: s: only as far back.
+    """
     spread = variances(event, p)
     best = 0.0
-    for m, ((_, x1, y1), (_, x2, y2)) in enumerate(pairwise(event.way)):
+    for m, ((q, x1, y1), (_, x2, y2)) in enumerate(pairwise(event.way)):
+        if q >= within:
+            break
         dx, dy = x2 - x1, y2 - y1
         length = hypot(dx, dy)
         if length > 0.0:

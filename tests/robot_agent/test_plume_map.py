@@ -349,6 +349,11 @@ def test_a_meeting_counts_for_a_place_that_explains_it():
     assert evidence.meetings(0, 39.0, 3.0) == 2
 
 
+def test_a_meeting_far_downwind_does_not_count():
+    evidence = evidence_of((10, 42.0, 3.0), (20, 48.0, 3.0), (30, 42.0, 3.0))
+    assert evidence.meetings(0, 40.0, 3.0) == 2
+
+
 @pytest.mark.parametrize("where", [(42.0, 6.0), (36.0, 3.0)], ids=["beside", "upwind"])
 def test_a_hit_that_a_source_there_does_not_give_speaks_against_the_place(where):
     evidence = evidence_of((10, 42.0, 3.0), (20, *where), (30, 42.0, 3.0))
