@@ -14,7 +14,7 @@ the bit, in whatever order and however late the events came. Python's integers d
 from __future__ import annotations
 
 from math import ceil, hypot, log
-from operator import add
+from operator import add, itemgetter
 
 from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
@@ -47,6 +47,9 @@ class EventMap:
         tables = Likelihood(p)
         self.fine = Grid(self.x0, self.y0, p.cell, self.nx, self.ny, tables)
         self.coarse = Grid(self.x0, self.y0, long, nx, ny, tables)
+        self._samples, fine, coarse = _places(nx, ny)
+        # The first once more at the end, for of a single one an itemgetter makes no tuple.
+        self._of_fine, self._of_coarse = itemgetter(*fine, fine[0]), itemgetter(*coarse, coarse[0])
         self._half_life = p.forget * log(2.0) / step  # decisions
         self.newest = 0
 
@@ -94,32 +97,42 @@ class EventMap:
         r = self._p.upwind + SOFT
         return 0.0, x + r * dx / length, y + r * dy / length
 
-    def sample(self) -> list[tuple[int, range, list[int]]]:
+    def sample(self) -> list[tuple[int, range, tuple[int, ...]]]:
         """M at one fine cell of every coarse one; at other ones from line to line, so that no narrow ridge slips through.
 
         Returns:
             i, the js, and the values of each line; of the fine cells (i, j) there.
         """
-        fine, coarse, ny, far = self.fine.M, self.coarse.M, self.ny, self.coarse.ny
-        lines = []
-        for a in range(self.coarse.nx):
-            for n in range(2):  # every other column of cells, two lines apart
-                i, first = COARSE * a + SPOTS[n], COARSE * n + (a + 2 * n) % COARSE
-                js = range(first, ny, 2 * COARSE)
-                row = map(add, coarse[a * far + n : (a + 1) * far : 2], fine[i * ny + first : (i + 1) * ny : 2 * COARSE])
-                lines.append((i, js, list(row)))
-        return [line for line in lines if line[2]]
+        row = tuple(map(add, self._of_fine(self.fine.M), self._of_coarse(self.coarse.M)))
+        return [(i, js, row[here]) for i, js, here in self._samples]
 
-    def summit(self, xs: range, ys: range) -> tuple[int, int, int]:
-        """About what M is at the best of the fine cells (i, j) with i in `xs` and j in `ys`; i, j."""
+    def crests(self, xs: range, floor: int) -> list[tuple[int, int, int]]:
+        """M at the highest of the fine cells (i, j) of every second line with i in `xs`; i, j.
+
+        One of two cells of a line is looked at: each of the others, and those between the lines, are neighbours of one. The
+        fine grid says which is the highest; on the coarse one neighbours in a line differ by little. Lines that are below
+        `floor` for sure are left out.
+        """
         fine, ny = self.fine.M, self.ny
+        coarse, far = self.coarse.M, self.coarse.ny
+        end, last = self.coarse.nx - 1, far - 1
+        tops = [max(coarse[a * far : (a + 1) * far]) for a in range(self.coarse.nx)]
         found = []
-        for i in xs:
-            line = fine[i * ny + ys.start : i * ny + ys.stop]
+        for i in range(xs.start & ~1, xs.stop, 2):
+            first = i // 2 % 2
+            line = fine[i * ny + first : (i + 1) * ny : 2]
             best = max(line)
-            j = ys.start + line.index(best)
-            found.append((best + self.coarse.M[i // COARSE * self.coarse.ny + j // COARSE], i, j))
-        return max(found)
+            a, s, t = _coarse(i)
+            low, high = max(a, 0), min(a + 1, end)
+            if best + max(tops[low], tops[high]) < floor:
+                continue
+            j = first + 2 * line.index(best)
+            b, u, v = _coarse(j)
+            left, right = max(b, 0), min(b + 1, last)
+            here = s * (u * coarse[low * far + left] + v * coarse[low * far + right])
+            here += t * (u * coarse[high * far + left] + v * coarse[high * far + right])
+            found.append((best + (here >> _BITS), i, j))
+        return found
 
     def window(self, xs: range, ys: range) -> list[list[int]]:
         """M of the fine cells (i, j) with i in `xs` and j in `ys`, a list for every i."""
@@ -145,6 +158,22 @@ class EventMap:
         corner = min(max(a, 0), nx - 1) * ny
         line = self.coarse.M[corner + max(low, 0) : corner + min(high, ny - 1) + 1]
         return line[:1] * -min(low, 0) + line + line[-1:] * max(high - ny + 1, 0)
+
+
+def _places(nx: int, ny: int) -> tuple[list[tuple[int, range, slice]], list[int], list[int]]:
+    """Of the samples, given the numbers of coarse cells: i, the js and which they are, by line; the cells of both grids."""
+    lines: list[tuple[int, range, slice]] = []
+    fine: list[int] = []
+    coarse: list[int] = []
+    for a in range(nx):
+        for n in range(2):  # every other column of cells, two lines apart
+            i = COARSE * a + SPOTS[n]
+            js = range(COARSE * n + (a + 2 * n) % COARSE, COARSE * ny, 2 * COARSE)
+            if js:
+                lines.append((i, js, slice(len(fine), len(fine) + len(js))))
+                fine += [i * COARSE * ny + j for j in js]
+                coarse += [a * ny + j // COARSE for j in js]
+    return lines, fine, coarse
 
 
 def _coarse(i: int) -> tuple[int, int, int]:

@@ -47,26 +47,9 @@ def spread(p: Posterior) -> float:
 def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
     """Over the fine cells of the box that holds what counts.
 
-    How high the best cell is says what counts, and it lies between samples: so it is looked for first, by the fine grid
-    alone where samples say that it may be, then with both grids about the place.
+    A large box is looked at in every nth line across it, which tells where the smaller one is that holds nearly all.
     """
-    tops = [max(row) for _, _, row in samples]
-
-    def box(floor: int, *cell: int) -> tuple[range, range]:
-        """About all samples above `floor`, and about the cell (i, j)."""
-        xs, ys = [*cell[:1]], [*cell[1:]]
-        for (i, js, row), top in zip(samples, tops, strict=True):
-            if top > floor:
-                there = [j for j, m in zip(js, row, strict=True) if m > floor]
-                xs.append(i)
-                ys += (there[0], there[-1])
-        return _box(min(xs), max(xs), chart.nx), _box(min(ys), max(ys), chart.ny)
-
-    _, i, j = chart.summit(*box(max(tops) - int(BETWEEN / scale)))
-    near = _lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny))
-    peak, i, j = max((max(row), i, js[row.index(max(row))]) for i, js, row in near)
-    xs, ys = box(peak - int(CUT / scale), i, j)
-    # A large box is looked at in every nth line across it, which tells where the smaller one is that holds nearly all.
+    i, j, xs, ys = _counts(chart, samples, scale)
     while (every := len(xs) * len(ys) // LARGE + 1) > 1:
         thin = (xs[::every], ys) if len(xs) > len(ys) else (xs, ys[::every])
         found, _ = _sum(_lines(chart, *thin), scale)
@@ -82,6 +65,38 @@ def _closely(chart: EventMap, samples: Sequence[Line], scale: float) -> Moments:
     lines = _lines(chart, xs, ys)
     found, _ = _sum(lines, scale)
     return _fine(lines, scale) if found[2] + found[4] < SHARP**2 else found
+
+
+def _counts(chart: EventMap, samples: Sequence[Line], scale: float) -> tuple[int, int, range, range]:
+    """The best cell i, j, and the box that holds what counts beside it.
+
+    How high the best cell is says what counts, and it lies between samples: so it is looked for first, where samples say
+    that it may be.
+    """
+    cut = int(CUT / scale)
+    best = _best(samples)
+    may = [i for i, _, row in samples if max(row) > best[0] - int(BETWEEN / scale)]
+    crests = [best, *chart.crests(_box(may[0], may[-1], chart.nx), best[0] - cut)]
+    _, i, j = max(crests)
+    peak, i, j = _best(_lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny)))
+    floor = peak - cut
+    us, vs = [i], [j]
+    for m, u, v in crests:
+        if m > floor:
+            us.append(u)
+            vs.append(v)
+    for u, js, row in samples:
+        if max(row) > floor:
+            us.append(u)
+            vs.append(next(v for v, m in zip(js, row, strict=True) if m > floor))
+            vs.append(next(v for v, m in zip(reversed(js), reversed(row), strict=True) if m > floor))
+    return i, j, _box(min(us), max(us), chart.nx), _box(min(vs), max(vs), chart.ny)
+
+
+def _best(lines: Sequence[Line]) -> tuple[int, int, int]:
+    """The greatest value, its i and its j."""
+    top, i, js, row = max(((max(row), i, js, row) for i, js, row in lines), key=lambda line: line[:2])
+    return top, i, js[row.index(top)]
 
 
 def _box(low: int, high: int, n: int) -> range:

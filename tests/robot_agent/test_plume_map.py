@@ -126,6 +126,23 @@ def test_a_narrow_ridge_does_not_slip_through_between_samples(turn, y):
     assert abs((p.y - q.y) * u - (p.x - q.x) * v) < 0.5
 
 
+@pytest.mark.parametrize("high", [0, 1])
+def test_two_narrow_tops_that_lie_between_samples_both_count(high):
+    """One is looked for, and the box about it is to hold the other, too."""
+    chart = EventMap(ARENA, TABLE, 1.0)
+    tops = [(41, 80, high), (57, 81, 1 - high)]
+
+    def height(i, j):
+        return max(-2.0 * (i - u) ** 2 - 4.0 * (j - v) ** 2 - less for u, v, less in tops)
+
+    chart.fine.M[:] = [round(height(i, j) / chart.scale()) for i in range(chart.nx) for j in range(chart.ny)]
+    assert max(height(i, j) for i, js, _ in chart.sample() for j in js) < -2.0
+    p, q = posterior(chart), by_all_cells(chart)
+    assert spread(q) > 4.0
+    assert (p.x, p.y) == pytest.approx((q.x, q.y), abs=0.5)
+    assert spread(p) == pytest.approx(spread(q), rel=0.1)
+
+
 def by_all_cells(chart):
     """Mean and covariance over parts of all fine cells, with a spline through their middles."""
     M = np.array(chart.window(range(chart.nx), range(chart.ny)), dtype=float) * chart.scale()
@@ -149,8 +166,9 @@ def test_between_the_middles_of_coarse_cells_the_map_is_linear():
     assert corner == [[0]], "at the edge as the nearest coarse cell"
 
 
-def test_an_arena_of_one_coarse_cell_will_do():
-    chart = EventMap(Arena(x_min=0.0, x_max=2.0, y_min=0.0, y_max=40.0), TABLE, 1.0)
+@pytest.mark.parametrize("length", [2.0, 40.0])
+def test_an_arena_of_the_width_of_a_coarse_cell_will_do(length):
+    chart = EventMap(Arena(x_min=0.0, x_max=2.0, y_min=20.0 - length / 2.0, y_max=20.0 + length / 2.0), TABLE, 1.0)
     for k in range(20):
         chart.learn(k, unpack(pack(0, k % 2 == 0, 1.0, 20.0, 0.1, [(0.0, lag) for lag in LAGS], ARENA), ARENA))
         assert 0.0 <= posterior(chart).x <= 3.0
