@@ -13,7 +13,8 @@ from protocol.scenario.sections import Arena
 from robot_agent.interfaces import Posterior
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
 from robot_agent.plume.map import EventMap
-from robot_agent.plume.posterior import CUT, posterior, spread
+from robot_agent.plume.moments import CUT
+from robot_agent.plume.posterior import posterior, spread
 
 
 def chart_of(events):
