@@ -1,6 +1,6 @@
 """plume-map: a map that is equal to the bit wherever the events are, and the posterior below a cell."""
 
-from math import hypot
+from math import hypot, log
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from robot_agent.interfaces import Posterior
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
 from robot_agent.plume.map import EventMap
 from robot_agent.plume.moments import CUT
-from robot_agent.plume.posterior import posterior, spread
+from robot_agent.plume.posterior import BODY, FAR, posterior, spread
 
 
 def chart_of(events):
@@ -144,12 +144,35 @@ def test_two_narrow_tops_that_lie_between_samples_both_count(high):
     assert spread(p) == pytest.approx(spread(q), rel=0.1)
 
 
+@pytest.mark.parametrize(("faint", "narrow"), [(0.01, True), (0.05, False)])
+def test_a_faint_place_far_away_does_not_widen_the_posterior(faint, narrow):
+    """A fiftieth of all: less does not count, more does."""
+    chart = EventMap(ARENA, TABLE, 1.0)
+    tops = [(41, 80, 0.0), (61, 81, -log(faint))]
+    chart.fine.M[:] = [
+        round(max(-0.5 * (i - u) ** 2 - 0.5 * (j - v) ** 2 - less for u, v, less in tops) / chart.scale())
+        for i in range(chart.nx)
+        for j in range(chart.ny)
+    ]
+    p, q = posterior(chart), by_all_cells(chart)
+    assert (spread(p) < 1.2) == narrow
+    assert (p.x, p.y) == pytest.approx((q.x, q.y), abs=0.1)
+    assert spread(p) == pytest.approx(spread(q), rel=0.1)
+
+
 def by_all_cells(chart):
-    """Mean and covariance over parts of all fine cells, with a spline through their middles."""
+    """Mean and covariance over parts of all fine cells, or of those near the best one if nearly all is there.
+
+    With a spline through the middles of cells.
+    """
     M = np.array(chart.window(range(chart.nx), range(chart.ny)), dtype=float) * chart.scale()
     u, v = np.arange(0.0, chart.nx - 1, 0.25), np.arange(0.0, chart.ny - 1, 0.25)
     w = RectBivariateSpline(np.arange(chart.nx), np.arange(chart.ny), M)(u, v)
     w = np.where(w > w.max() - CUT, np.exp(w - w.max()), 0.0)
+    i, j = np.unravel_index(w.argmax(), w.shape)
+    near = np.outer(abs(u - u[i]) <= BODY, abs(v - v[j]) <= BODY)
+    if w[~near].sum() < FAR * w[near].sum():
+        w = np.where(near, w, 0.0)
     w /= w.sum()
     x, y = chart.x0 + (u + 0.5) * chart.cell, chart.y0 + (v + 0.5) * chart.cell
     mx, my = w.sum(1) @ x, w.sum(0) @ y
