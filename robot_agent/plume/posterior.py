@@ -1,7 +1,7 @@
 """Mean and spread of where the source may be, below the size of a cell where the map is sharp.
 
 Rules: a function of the map alone. A wide posterior is summed over a sample of every coarse cell, another one over the fine
-cells of the box that holds what counts. Where the spread is a few cells, each cell that matters is divided into 3 x 3
+cells of the box that holds what counts; of its body alone when next to nothing is elsewhere. Where the spread is a few cells, each cell that matters is divided into 3 x 3
 parts, with the logarithm between the middles of cells by the parabola through three of them: the map is smooth on that
 scale, for the way of the air has a width, and the mean is not bound to the middles of cells.
 """
