@@ -18,7 +18,10 @@ Line = tuple[int, Sequence[int], Sequence[int]]
 
 def best(lines: Sequence[Line]) -> tuple[int, int, int]:
     """The greatest value, its i and its j."""
-    top, i, js, row = max(((max(row), i, js, row) for i, js, row in lines), key=lambda line: line[:2])
+    tops = [max(row) for _, _, row in lines]
+    top = max(tops)
+    n = len(tops) - 1 - tops[::-1].index(top)  # of equal ones the last line
+    i, js, row = lines[n]
     return top, i, js[row.index(top)]
 
 

@@ -1,9 +1,10 @@
 """Mean and spread of where the source may be, below the size of a cell where the map is sharp.
 
 Rules: a function of the map alone. A wide posterior is summed over a sample of every coarse cell, another one over the fine
-cells of the box that holds what counts; of its body alone when next to nothing is elsewhere. Where the spread is a few cells, each cell that matters is divided into 3 x 3
-parts, with the logarithm between the middles of cells by the parabola through three of them: the map is smooth on that
-scale, for the way of the air has a width, and the mean is not bound to the middles of cells.
+cells of the box that holds what counts; of its body alone when next to nothing is elsewhere. Where the spread is a few
+cells, each cell that matters is divided into 3 x 3 parts, with the logarithm between the middles of cells by the parabola
+through three of them: the map is smooth on that scale, for the way of the air has a width, and the mean is not bound to
+the middles of cells.
 """
 
 from __future__ import annotations
@@ -87,8 +88,11 @@ def _body(chart: EventMap, lines: Sequence[Line], every: int, summit: tuple[int,
     for u, js, row in lines:
         low, high = (bisect_left(js, vs[0]), bisect_left(js, vs[-1] + 1)) if u in us else (0, 0)
         outside += [(u, part, cells) for part, cells in ((js[:low], row[:low]), (js[high:], row[high:])) if part]
+    far = every * weight(outside, peak, scale)
+    if far >= FAR * len(us) * len(vs):  # were every cell of the body as good as the best one
+        return []
     body = _lines(chart, us, vs)
-    return body if every * weight(outside, peak, scale) < FAR * weight(body, peak, scale) else []
+    return body if far < FAR * weight(body, peak, scale) else []
 
 
 def _counts(chart: EventMap, samples: Sequence[Line], scale: float) -> tuple[int, int, int, range, range]:
@@ -98,8 +102,9 @@ def _counts(chart: EventMap, samples: Sequence[Line], scale: float) -> tuple[int
     that it may be.
     """
     cut = int(CUT / scale)
+    tops = [max(row) for _, _, row in samples]
     highest = best(samples)
-    may = [i for i, _, row in samples if max(row) > highest[0] - int(BETWEEN / scale)]
+    may = [i for (i, _, _), top in zip(samples, tops, strict=True) if top > highest[0] - int(BETWEEN / scale)]
     crests = [highest, *chart.crests(_box(may[0], may[-1], chart.nx), highest[0] - cut)]
     _, i, j = max(crests)
     peak, i, j = best(_lines(chart, _box(i, i, chart.nx), _box(j, j, chart.ny)))
@@ -109,8 +114,8 @@ def _counts(chart: EventMap, samples: Sequence[Line], scale: float) -> tuple[int
         if m > floor:
             us.append(u)
             vs.append(v)
-    for u, js, row in samples:
-        if max(row) > floor:
+    for (u, js, row), top in zip(samples, tops, strict=True):
+        if top > floor:
             us.append(u)
             vs.append(next(v for v, m in zip(js, row, strict=True) if m > floor))
             vs.append(next(v for v, m in zip(reversed(js), reversed(row), strict=True) if m > floor))
