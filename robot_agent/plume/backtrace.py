@@ -53,8 +53,9 @@ class WindPast:
 
     def diffusivity(self) -> float:
         """D = D_min + k_D 5 s var(w), m^2/s."""
-        recent = list(self._samples)[-RECENT:]
-        n = max(len(recent), 1)
-        mean_x, mean_y = sum(u for u, _ in recent) / n, sum(v for _, v in recent) / n
-        variance = sum((u - mean_x) ** 2 + (v - mean_y) ** 2 for u, v in recent) / n
+        recent = list(self._samples)[-RECENT:] or [(0.0, 0.0)]
+        variance = 0.0
+        for component in zip(*recent, strict=True):
+            mean = sum(component) / len(component)
+            variance += sum([(w - mean) ** 2 for w in component]) / len(component)
         return self._p.spread + self._p.meander * CORRELATED * variance

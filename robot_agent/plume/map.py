@@ -13,6 +13,7 @@ the bit, in whatever order and however late the events came. Python's integers d
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import ceil, hypot, log
 from operator import add, itemgetter
 
@@ -29,8 +30,7 @@ HALF = 2
 WIDE = 3.0  # m: as long as the way's deviation is below this
 COARSE = 4  # fine cells along the side of a coarse one
 SPOTS = (0, 2)  # fine lines of a coarse one that samples are taken on
-_BETWEEN = tuple((2 * (COARSE - n) - 1, 2 * n + 1) for n in range(COARSE))  # parts of 2 COARSE
-_BITS = 2 * (2 * COARSE - 1).bit_length()  # of (2 COARSE)^2
+_BETWEEN = tuple(((2 * n + 1) / (2 * COARSE), 1.0 - (2 * n + 1) / (2 * COARSE)) for n in range(COARSE))
 
 
 class EventMap:
@@ -97,62 +97,50 @@ class EventMap:
         r = self._p.upwind + SOFT
         return 0.0, x + r * dx / length, y + r * dy / length
 
-    def sample(self) -> list[tuple[int, range, tuple[int, ...]]]:
+    def sample(self) -> list[tuple[int, list[float], tuple[float, ...], float]]:
         """M at one fine cell of every coarse one; at other ones from line to line, so that no narrow ridge slips through.
 
         Returns:
-            i, the js, and the values of each line; of the fine cells (i, j) there.
+            i, the js, the values and the greatest of them of each line; of the fine cells (i, j) there.
         """
         row = tuple(map(add, self._of_fine(self.fine.M), self._of_coarse(self.coarse.M)))
-        return [(i, js, row[here]) for i, js, here in self._samples]
+        return [(i, js, row[here], max(row[here])) for i, js, here in self._samples]
 
-    def crests(self, xs: range, floor: int) -> list[tuple[int, int, int]]:
+    def crests(self, xs: range) -> list[tuple[float, int, int]]:
         """M at the highest of the fine cells (i, j) of every second line with i in `xs`; i, j.
 
         One of two cells of a line is looked at: each of the others, and those between the lines, are neighbours of one. The
-        fine grid says which is the highest; on the coarse one neighbours in a line differ by little. Lines that are below
-        `floor` for sure are left out.
+        fine grid says which is the highest; on the coarse one neighbours in a line differ by little.
         """
         fine, ny = self.fine.M, self.ny
         coarse, far = self.coarse.M, self.coarse.ny
-        end, last = self.coarse.nx - 1, far - 1
-        tops = [max(coarse[a * far : (a + 1) * far]) for a in range(self.coarse.nx)]
         found = []
         for i in range(xs.start & ~1, xs.stop, 2):
             first = i // 2 % 2
             line = fine[i * ny + first : (i + 1) * ny : 2]
-            best = max(line)
-            a, s, t = _coarse(i)
-            low, high = max(a, 0), min(a + 1, end)
-            if best + max(tops[low], tops[high]) < floor:
-                continue
-            j = first + 2 * line.index(best)
-            b, u, v = _coarse(j)
-            left, right = max(b, 0), min(b + 1, last)
-            here = s * (u * coarse[low * far + left] + v * coarse[low * far + right])
-            here += t * (u * coarse[high * far + left] + v * coarse[high * far + right])
-            found.append((best + (here >> _BITS), i, j))
+            top = max(line)
+            j = first + 2 * line.index(top)
+            found.append((top + coarse[i // COARSE * far + j // COARSE], i, j))
         return found
 
-    def window(self, xs: range, ys: range) -> list[list[int]]:
+    def window(self, xs: range, ys: range) -> list[list[float]]:
         """M of the fine cells (i, j) with i in `xs` and j in `ys`, a list for every i."""
         fine, ny = self.fine.M, self.ny
         low, high = _coarse(ys[0])[0], _coarse(ys[-1])[0] + 1
-        columns = [(b - low, b - low + 1, s, t) for b, s, t in map(_coarse, ys)]
+        skip = ys.start - COARSE * low - COARSE // 2
+        here = slice(skip, skip + ys.stop - ys.start, ys.step)
         rows = []
-        lines: dict[int, list[int]] = {}
+        lines: dict[int, list[float]] = {}
         for i in xs:
             a, s, t = _coarse(i)
             for b in (a, a + 1):
                 if b not in lines:
-                    line = self._line(b, low, high)
-                    lines[b] = [u * line[m] + v * line[n] for m, n, u, v in columns]
-            here = fine[i * ny + ys.start : i * ny + ys.stop : ys.step]
-            pairs = zip(here, lines[a], lines[a + 1], strict=True)
-            rows.append([f + (s * m + t * n >> _BITS) for f, m, n in pairs])
+                    lines[b] = _between(self._line(b, low, high))[here]
+            cells = fine[i * ny + ys.start : i * ny + ys.stop : ys.step]
+            rows.append([f + s * m + t * n for f, m, n in zip(cells, lines[a], lines[a + 1], strict=True)])
         return rows
 
-    def _line(self, a: int, low: int, high: int) -> list[int]:
+    def _line(self, a: int, low: int, high: int) -> list[float]:
         """Coarse cells (a, low) to (a, high); what lies outside is as its neighbour inside."""
         nx, ny = self.coarse.nx, self.coarse.ny
         corner = min(max(a, 0), nx - 1) * ny
@@ -160,9 +148,9 @@ class EventMap:
         return line[:1] * -min(low, 0) + line + line[-1:] * max(high - ny + 1, 0)
 
 
-def _places(nx: int, ny: int) -> tuple[list[tuple[int, range, slice]], list[int], list[int]]:
+def _places(nx: int, ny: int) -> tuple[list[tuple[int, list[float], slice]], list[int], list[int]]:
     """Of the samples, given the numbers of coarse cells: i, the js and which they are, by line; the cells of both grids."""
-    lines: list[tuple[int, range, slice]] = []
+    lines: list[tuple[int, list[float], slice]] = []
     fine: list[int] = []
     coarse: list[int] = []
     for a in range(nx):
@@ -170,13 +158,23 @@ def _places(nx: int, ny: int) -> tuple[list[tuple[int, range, slice]], list[int]
             i = COARSE * a + SPOTS[n]
             js = range(COARSE * n + (a + 2 * n) % COARSE, COARSE * ny, 2 * COARSE)
             if js:
-                lines.append((i, js, slice(len(fine), len(fine) + len(js))))
+                lines.append((i, list(map(float, js)), slice(len(fine), len(fine) + len(js))))
                 fine += [i * COARSE * ny + j for j in js]
                 coarse += [a * ny + j // COARSE for j in js]
     return lines, fine, coarse
 
 
-def _coarse(i: int) -> tuple[int, int, int]:
+def _coarse(i: int) -> tuple[int, float, float]:
     """The coarse cell whose middle is the last before that of fine cell i, the weight of its value and of the next one's."""
     a, n = divmod(i - COARSE // 2, COARSE)
-    return a, *_BETWEEN[n]
+    t, s = _BETWEEN[n]
+    return a, s, t
+
+
+def _between(line: list[float]) -> list[float]:
+    """At the fine cells between the middles of coarse ones."""
+    found: list[float] = []
+    for m, n in pairwise(line):
+        d = (n - m) / (2 * COARSE)
+        found += m + d, m + 3.0 * d, m + 5.0 * d, m + 7.0 * d
+    return found

@@ -17,7 +17,7 @@ class PlumeMap(Table, frozen=True):
     wind_memory: Annotated[int, Meta(ge=2, le=600)] = 110  # own wind samples behind a back-trajectory
     smooth: Annotated[float, Meta(gt=0, le=1)] = 0.1  # share of a position reading in the own position, per tick
     # map
-    cell: Annotated[float, Meta(ge=0.1, le=20)] = 0.75  # m: where the way is known well; four times as long where it is not
+    cell: Annotated[float, Meta(ge=0.1, le=20)] = 0.9  # m: where the way is known well; four times as long where it is not
     reach: Positive = 0.9  # r: half width of a plume that is smelt, m
     upwind: NonNegative = 0.42  # how far upwind of a source it is smelt, the mean over places beside it, m
     blur: Positive = 0.7  # sigma_0: the half width's and the way's deviation at lag 0 together, m
