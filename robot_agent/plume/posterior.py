@@ -45,8 +45,9 @@ def spread(p: Posterior) -> float:
 
 def _moments(chart: EventMap, scale: float) -> Moments:
     samples = chart.sample()
-    top, _, _ = best(samples)
-    crests = _crests(chart, samples, top, scale)
+    top, _, _ = seen = best(samples)
+    may = [i for i, _, _, high in samples if high > top - BETWEEN / scale]
+    crests = [seen, *chart.crests(_box(may[0], may[-1], chart.nx))]
     highest, i, j = max(crests)
     hidden = highest > top + HIDDEN / scale
     if not hidden and (told := sums(samples, top, scale)).many() >= MANY:
@@ -84,12 +85,6 @@ def _moments(chart: EventMap, scale: float) -> Moments:
 
 def _near(lines: Sequence[Line], found: Moments, peak: float, scale: float) -> Moments:
     return moments_of_parts(lines, peak, scale) if found[2] + found[4] < SHARP**2 else found
-
-
-def _crests(chart: EventMap, samples: Sequence[Line], top: float, scale: float) -> list[Crest]:
-    """The best sample and what is between samples, where these say that the best cell may be."""
-    may = [i for i, _, _, high in samples if high > top - BETWEEN / scale]
-    return [best(samples), *chart.crests(_box(may[0], may[-1], chart.nx))]
 
 
 def _counts(samples: Sequence[Line], crests: Sequence[Crest], floor: float) -> tuple[range, range]:

@@ -132,7 +132,7 @@ def test_the_few_cells_that_are_looked_at_say_what_all_cells_say(turn):
 
 
 def alike(p, q):
-    near = hypot(p.x - q.x, p.y - q.y) < 0.1 + 0.2 * spread(q)
+    near = hypot(p.x - q.x, p.y - q.y) < 0.12 + 0.2 * spread(q)
     return near and spread(p) == pytest.approx(spread(q), rel=0.3, abs=0.05)
 
 
