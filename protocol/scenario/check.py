@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
-from math import dist
+from math import ceil, dist, log
 
 from protocol.errors import ScenarioError
 from protocol.scenario.faults.check import faults_in
@@ -17,6 +17,7 @@ from protocol.scenario.settings import placed
 from protocol.topology.graph import fault_in
 
 APART = 0.4  # least distance of two centres at the start, m: a P3-DX is 0.381 m wide
+HALVINGS = 900  # of an event's weight, in a run: with more of them the first and the last have no common doubles
 _NO_ORIGINS: Mapping[str, str] = {}
 
 Fault = tuple[str, tuple[str, ...]]  # a sentence without its place, and the values that it is about
@@ -200,9 +201,19 @@ def _supervision(scenario: Scenario) -> Iterator[Fault]:
         )
 
 
+def _forgetting(scenario: Scenario) -> Iterator[Fault]:
+    forget, least = scenario.plume_map.forget, ceil(100.0 * scenario.max_time / (HALVINGS * log(2.0))) / 100.0
+    if scenario.algorithm == "plume-map" and forget < least:
+        yield (
+            f"plume_map.forget is {forget:g}; it must be at least {least:g} where max_time is {scenario.max_time:g}, for a"
+            f" map can hold {HALVINGS} half-lives.",
+            ("plume_map.forget", "max_time"),
+        )
+
+
 CHECKS: tuple[Callable[[Scenario], Iterator[Fault]], ...] = (
     _arena, _source, _start, _timing, _drill, _network, _graph, _schedule, _faults, _potential, _realtime,
-    _supervision,
+    _supervision, _forgetting,
 )
 
 

@@ -10,9 +10,11 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from msgspec import inspect
+from msgspec import inspect, structs
 
 from protocol.errors import ScenarioError
+from protocol.scenario import Scenario
+from protocol.scenario.check import check
 from protocol.scenario.load import Override, load_scenario, parse_setting
 from protocol.scenario.schema import value_types
 from protocol.scenario.settings import read_settings
@@ -120,6 +122,17 @@ def test_robots_that_do_not_fit_the_arena_are_refused_with_how_many_do() -> None
     assert sentence.startswith("--set robots and --set start.spacing: robots is 1000; it must be at most 600 to start")
     assert is_one_sentence(sentence)
     load_scenario(None, overrides=flags("robots=600", "start.spacing=4"))
+
+
+def test_a_map_that_forgets_too_fast_for_the_time_of_the_run_is_refused_with_what_will_do() -> None:
+    def mapping(*texts: str) -> Scenario:
+        return structs.replace(load_scenario(None, overrides=flags("max_time=100000", *texts)), algorithm="plume-map")
+
+    with pytest.raises(ScenarioError) as refused:
+        check(mapping("plume_map.forget=150"))
+    assert str(refused.value).startswith("plume_map.forget is 150; it must be at least 160.3 where max_time is 100000")
+    assert is_one_sentence(str(refused.value))
+    check(mapping("plume_map.forget=160.3"))
 
 
 def test_an_unreadable_file_is_one_sentence(here: Path) -> None:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from plume_helpers import ARENA, TABLE, record
 from scipy.interpolate import RectBivariateSpline
 
+from protocol.scenario.check import HALVINGS
 from protocol.scenario.sections import Arena
 from robot_agent.interfaces import Posterior
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
@@ -231,6 +232,12 @@ def test_an_arena_of_the_width_of_a_coarse_cell_will_do(length):
     for k in range(20):
         chart.learn(k, unpack(pack(0, k % 2 == 0, 1.0, 20.0, 0.1, [(0.0, lag) for lag in LAGS], ARENA), ARENA))
         assert 0.0 <= posterior(chart).x <= 3.0
+
+
+def test_what_a_scenario_allows_a_map_can_hold():
+    last = int(HALVINGS * TABLE.forget * log(2.0))
+    told = [(k + 10 * n, record(hit=n % 2 == 0, y=1.0)) for k in (0, last - 100) for n in range(10)]
+    assert posterior(chart_of(told)).y == pytest.approx(1.0, abs=0.5)
 
 
 def test_far_events_are_forgotten():
