@@ -14,6 +14,7 @@ from protocol.scenario.laws import PlumeMap
 from robot_agent.plume.events import LAGS, Place
 
 RECENT = 60  # samples for the variance
+FASTEST = 100.0  # m/s: what a broken sensor reads beyond this is cut, or it would stay in the sums for ever
 CORRELATED = 5.0  # s: how long the wind's deviations last, 1 / wind.bandwidth
 
 
@@ -24,38 +25,42 @@ class WindPast:
         """`step`: time between two samples, s."""
         self._p = p
         self._step = step
-        self._samples: deque[Place] = deque(maxlen=max(2, round(p.wind_memory / step)))
+        # Sums of u, v and u^2 + v^2 up to each sample, and before the first: any stretch of time is a difference of two.
+        self._sums: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)], max(2, round(p.wind_memory / step)) + 1)
 
     def record(self, wind: Place) -> None:
-        self._samples.append(wind)
+        u, v = (min(max(-FASTEST, w), FASTEST) for w in wind)  # this way about it is a number even if w is none
+        x, y, square = self._sums[-1]
+        self._sums.append((x + u, y + v, square + u * u + v * v))
 
     def prefill(self, winds: Iterable[Place]) -> None:
-        self._samples.extend(winds)
+        for wind in winds:
+            self.record(wind)
 
     def way(self) -> list[Place]:
         """Displacement of the air during the latest LAGS[m] seconds, m."""
-        samples, step = self._samples, self._step
-        mean = (0.0, 0.0)
-        if len(samples) < round(LAGS[-1] / step):
-            n = max(len(samples), 1)
-            mean = (sum(u for u, _ in samples) / n, sum(v for _, v in samples) / n)
-        x = y = 0.0
-        n = 0
+        known = len(self._sums) - 1
+        all_x, all_y, _ = self._latest(known)
         places = []
-        latest = reversed(samples)
         for lag in LAGS:
-            for _ in range(round(lag / step) - n):
-                u, v = next(latest, mean)
-                x, y = x + u * step, y + v * step
-            n = round(lag / step)
-            places.append((x, y))
+            n = round(lag / self._step)
+            if n <= known:
+                x, y, _ = self._latest(n)
+            else:
+                scale = n / max(known, 1)
+                x, y = all_x * scale, all_y * scale
+            places.append((x * self._step, y * self._step))
         return places
 
     def diffusivity(self) -> float:
         """D = D_min + k_D 5 s var(w), m^2/s."""
-        recent = list(self._samples)[-RECENT:] or [(0.0, 0.0)]
-        variance = 0.0
-        for component in zip(*recent, strict=True):
-            mean = sum(component) / len(component)
-            variance += sum([(w - mean) ** 2 for w in component]) / len(component)
+        n = min(RECENT, len(self._sums) - 1)
+        x, y, square = self._latest(n)
+        n = max(n, 1)
+        variance = max(0.0, square / n - (x * x + y * y) / (n * n))
         return self._p.spread + self._p.meander * CORRELATED * variance
+
+    def _latest(self, n: int) -> tuple[float, float, float]:
+        """Sums of the latest n samples."""
+        (x, y, square), (from_x, from_y, from_square) = self._sums[-1], self._sums[-1 - n]
+        return x - from_x, y - from_y, square - from_square

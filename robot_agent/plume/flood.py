@@ -105,7 +105,7 @@ class Flood:
         due, self._due = self._due & self._lacking(), 0
         if not (due or says):
             return b""
-        events = sorted(key for key in self._known if due & self._bit(key)) if due else []
+        events = self._keys(due)
         newest = max(self._now, events[-1][0] if events else 0)
         events = [key for key in events if newest - key[0] < self._window]
         upto = None
@@ -143,6 +143,17 @@ class Flood:
 
     def _bit(self, key: Key) -> int:
         return 1 << (key[0] - self._oldest) * self._robots + key[1]
+
+    def _keys(self, events: int) -> list[Key]:
+        """What of a set is known, oldest first."""
+        keys = []
+        while events > 0:
+            place = (events & -events).bit_length() - 1
+            events &= events - 1
+            key = self._oldest + place // self._robots, place % self._robots
+            if key in self._known:
+                keys.append(key)
+        return keys
 
     def _moved(self, events: int, by: int) -> int:
         """A set as counted from `by` decisions later; what is earlier is gone."""

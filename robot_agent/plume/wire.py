@@ -36,6 +36,8 @@ class Wire:
     def __init__(self, robots: int, window: int) -> None:
         self._robots, self._window = robots, window
         self._row = (1 << robots) - 1
+        # Times a row: so many of it.
+        self._ones = [sum(1 << n * robots for n in range(rows)) for rows in range(window + 1)]
 
     def write(
         self, newest: int, upto: int | None, oldest: int, has: int, events: Sequence[tuple[Key, bytes]]
@@ -93,12 +95,11 @@ class Wire:
         return [] if rows == [self._row] else rows
 
     def _spread(self, bits: int, count: int) -> int:
-        """The window of `count` rows told."""
-        has, row = 0, self._row
-        for n in range(self._window):
-            if n < count:
-                row = bits >> n * self._robots & self._row
-            has |= row << (self._window - 1 - n) * self._robots
+        """The window of `count` rows told; older ones are as the last of them, or full."""
+        last = bits >> (count - 1) * self._robots & self._row if count else self._row
+        has = last * self._ones[self._window - count]
+        for n in range(count):
+            has |= (bits >> n * self._robots & self._row) << (self._window - 1 - n) * self._robots
         return has
 
 

@@ -1,7 +1,8 @@
 """plume-map: what a record says of the way of the air, and of where the robot was."""
 
-from math import hypot
+from math import hypot, inf, nan
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,7 +11,7 @@ from plume_helpers import ARENA, TABLE
 
 from robot_agent.decision.plume_map import PlumeMapDecision
 from robot_agent.hand import Own
-from robot_agent.plume.backtrace import WindPast
+from robot_agent.plume.backtrace import CORRELATED, RECENT, WindPast
 from robot_agent.plume.events import LAGS, SIZE, pack, unpack
 
 bends = st.floats(-2.0, 2.0)
@@ -69,6 +70,19 @@ def test_without_wind_history_the_way_goes_on_at_the_mean_wind():
     past.record((2.0, 0.5))
     assert past.way()[0] == (3.0, 1.0)
     assert past.way()[-1] == pytest.approx((110 * 1.5, 110 * 0.5))
+
+
+@pytest.mark.parametrize("broken", [1e300, inf, -inf, nan])
+def test_the_latest_samples_say_the_way_and_the_variance_whatever_was_before(broken):
+    """Sums go on from sample to sample: what a broken sensor once read must leave them."""
+    winds = np.random.default_rng(7).normal((1.0, -0.2), (0.3, 0.4), (400, 2))
+    past = WindPast(TABLE, 1.0)
+    past.record((broken, broken))
+    past.prefill(map(tuple, winds.tolist()))
+    latest = winds[::-1].cumsum(0)
+    assert past.way() == [pytest.approx(latest[round(lag) - 1]) for lag in LAGS]
+    variance = winds[-RECENT:].var(0).sum()
+    assert past.diffusivity() == pytest.approx(TABLE.spread + TABLE.meander * CORRELATED * variance)
 
 
 def test_an_own_position_after_a_hang_is_the_reading_and_not_what_the_wheels_would_have_made_of_it():
