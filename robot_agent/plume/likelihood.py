@@ -15,6 +15,7 @@ is what makes maps equal to the bit.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import log
 
 from protocol.scenario.laws import PlumeMap
@@ -74,3 +75,9 @@ class Likelihood:
             gain = p.hit * log(1.0 + (1.0 - p.false) * P / p.false) if hit else p.miss * log(1.0 - P)
             row.append(round(ONE * gain))
         return tuple(row)
+
+
+@lru_cache(maxsize=8)
+def likelihood(p: PlumeMap) -> Likelihood:
+    """The tables of `p`; robots in one process, and runs in one sweep, share them."""
+    return Likelihood(p)

@@ -21,7 +21,7 @@ from protocol.scenario.laws import PlumeMap
 from protocol.scenario.sections import Arena
 from robot_agent.plume.events import Event
 from robot_agent.plume.grid import SOFT, Grid, Stretch
-from robot_agent.plume.likelihood import ONE, Likelihood
+from robot_agent.plume.likelihood import ONE, likelihood
 from robot_agent.plume.width import variances
 
 FRACTION = 10  # bits of an event's weight
@@ -43,7 +43,7 @@ class EventMap:
         nx = max(1, ceil((arena.x_max - arena.x_min) / long - 1e-9))
         ny = max(1, ceil((arena.y_max - arena.y_min) / long - 1e-9))
         self.nx, self.ny = COARSE * nx, COARSE * ny  # fine cells
-        tables = Likelihood(p)
+        tables = likelihood(p)
         self.fine = Grid(self.x0, self.y0, p.cell, self.nx, self.ny, tables)
         self.coarse = Grid(self.x0, self.y0, long, nx, ny, tables)
         self._samples, fine, coarse = _places(nx, ny)
