@@ -12,10 +12,11 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from math import sqrt
+from typing import NamedTuple
 
 from robot_agent.interfaces import Posterior
 from robot_agent.plume.map import COARSE, EventMap
-from robot_agent.plume.moments import CUT, Line, Moments, best, moments_of_parts, sums
+from robot_agent.plume.moments import CUT, Line, Moments, Sums, best, moments_of_parts, sums
 
 BETWEEN = 30.0  # nats below the best sample: the best cell lies between samples, and may be here
 MANY = 21  # samples of equal weight: as many tell a posterior,
@@ -43,6 +44,18 @@ def spread(p: Posterior) -> float:
     return sqrt(max(0.0, p.xx + p.yy))
 
 
+class Body(NamedTuple):
+    """The cells about the best one."""
+
+    i: int  # of a cell that is the best or beside it
+    j: int
+    xs: range
+    ys: range
+    lines: list[Line]
+    peak: float  # M of the best cell
+    inside: Sums
+
+
 def _moments(chart: EventMap, scale: float) -> Moments:
     samples = chart.sample()
     top, _, _ = seen = best(samples)
@@ -52,32 +65,42 @@ def _moments(chart: EventMap, scale: float) -> Moments:
     hidden = highest > top + HIDDEN / scale
     if not hidden and (told := sums(samples, top, scale)).many() >= MANY:
         return told.moments()
-    us, vs = _box(i, i, chart.nx, BODY), _box(j, j, chart.ny, BODY)
-    body = _lines(chart, us, vs)
-    peak, _, _ = best(body)
-    inside = sums(body, peak, scale)
+    body = _body(chart, i, j, scale)
     if hidden:
-        outside = sums(_without(samples, us, vs), peak, scale)
-        if outside.many() >= MANY and EACH * outside.w > inside.w:
-            return inside.plus(outside, EACH).moments()
-    xs, ys = _counts(samples, crests, peak - CUT / scale)
-    if _within(xs, us) and _within(ys, vs):
-        return _near(body, inside.moments(), peak, scale)
-    xs, ys = _box(xs[0], xs[-1], chart.nx), _box(ys[0], ys[-1], chart.ny)
+        outside = sums(_without(samples, body), body.peak, scale)
+        if outside.many() >= MANY and EACH * outside.w > body.inside.w:
+            return body.inside.plus(outside, EACH).moments()
+    xs, ys = _counts(samples, crests, body.peak - CUT / scale)
+    if _within(xs, body.xs) and _within(ys, body.ys):
+        return _near(body.lines, body.inside.moments(), body.peak, scale)
+    return _closely(chart, body, _box(xs[0], xs[-1], chart.nx), _box(ys[0], ys[-1], chart.ny), scale)
+
+
+def _body(chart: EventMap, i: int, j: int, scale: float) -> Body:
+    xs, ys = _box(i, i, chart.nx, BODY), _box(j, j, chart.ny, BODY)
+    lines = _lines(chart, xs, ys)
+    peak, _, _ = best(lines)
+    return Body(i, j, xs, ys, lines, peak, sums(lines, peak, scale))
+
+
+def _closely(chart: EventMap, body: Body, xs: range, ys: range, scale: float) -> Moments:
+    """Over the body and the fine cells of a box.
+
+    A large box is looked at in every nth line across it, which tells where the smaller one is that holds nearly all.
+    """
     small = False
     while True:
-        # A large box is looked at in every nth line across it, which tells where the smaller one is that holds nearly all.
         every = 1 if small else len(xs) * len(ys) // LARGE + 1
         lines = _lines(chart, *((xs[::every], ys) if len(xs) > len(ys) else (xs, ys[::every])))
-        outside = sums(_without(lines, us, vs), peak, scale)
-        if every * outside.w < FAR * inside.w:
-            return _near(body, inside.moments(), peak, scale)
-        found = x, y, xx, _, yy = inside.plus(outside, every).moments()
+        outside = sums(_without(lines, body), body.peak, scale)
+        if every * outside.w < FAR * body.inside.w:
+            return _near(body.lines, body.inside.moments(), body.peak, scale)
+        found = x, y, xx, _, yy = body.inside.plus(outside, every).moments()
         if every == 1:
-            return _near(lines, found, peak, scale)
+            return _near(lines, found, body.peak, scale)
         dx, dy, size = BOTH * sqrt(xx), BOTH * sqrt(yy), len(xs) * len(ys)
-        xs = _box(max(min(int(x - dx), i), xs[0]), min(max(int(x + dx), i), xs[-1]), chart.nx)
-        ys = _box(max(min(int(y - dy), j), ys[0]), min(max(int(y + dy), j), ys[-1]), chart.ny)
+        xs = _box(max(min(int(x - dx), body.i), xs[0]), min(max(int(x + dx), body.i), xs[-1]), chart.nx)
+        ys = _box(max(min(int(y - dy), body.j), ys[0]), min(max(int(y + dy), body.j), ys[-1]), chart.ny)
         small = len(xs) * len(ys) > SMALLER * size
         if small and (outside.many() >= MANY or every > COARSE):
             return found
@@ -107,13 +130,13 @@ def _within(inner: range, outer: range) -> bool:
     return inner[0] in outer and inner[-1] in outer
 
 
-def _without(lines: Sequence[Line], us: range, vs: range) -> list[Line]:
-    """What of lines is outside a box."""
+def _without(lines: Sequence[Line], body: Body) -> list[Line]:
+    """What of lines is outside the body."""
     outside: list[Line] = []
     for line in lines:
         u, js, row, _ = line
-        if u in us:
-            low, high = bisect_left(js, vs[0]), bisect_left(js, vs[-1] + 1)
+        if u in body.xs:
+            low, high = bisect_left(js, body.ys[0]), bisect_left(js, body.ys[-1] + 1)
             sides = (js[:low], row[:low]), (js[high:], row[high:])
             outside += [(u, part, cells, max(cells)) for part, cells in sides if part]
         else:
