@@ -98,14 +98,14 @@ class Grid:
             start = ceil(low)
             key = (n << 6 | slant) * BETWEEN + int((start - low) * BETWEEN)
             row = rows.get(key) or self._keep(kind, key)
-            stop = start + len(row)
-            if start < 0 or stop > nb:
-                row, start = row[max(-start, 0) :], max(start, 0)
-                stop = max(start, min(stop, nb))
+            if start < 0 or start + len(row) > nb:
+                row, start = row[max(-start, 0) : max(nb - start, 0)], max(start, 0)
             if not hit:
                 w = round(weight / later) * one
-            cells = slice(corner + start * stride_b, corner + stop * stride_b, stride_b)
-            M[cells] = [m + w * r for m, r in zip(M[cells], row, strict=False)]
+            at = corner + start * stride_b
+            for entry in row:
+                M[at] += w * entry
+                at += stride_b
             corner += stride_a
             variance += by_variance
             middle += by_middle

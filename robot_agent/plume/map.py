@@ -103,7 +103,7 @@ class EventMap:
             i, the js, the values and the greatest of them of each line; of the fine cells (i, j) there.
         """
         row = tuple(map(add, self._of_fine(self.fine.M), self._of_coarse(self.coarse.M)))
-        return [(i, js, row[here], max(row[here])) for i, js, here in self._samples]
+        return [(i, js, line := row[here], max(line)) for i, js, here in self._samples]
 
     def crests(self, xs: range) -> list[tuple[float, int, int]]:
         """M at the highest of the fine cells (i, j) of every second line with i in `xs`; i, j.
@@ -136,7 +136,8 @@ class EventMap:
                 if b not in lines:
                     lines[b] = _between(self._line(b, low, high))[here]
             cells = fine[i * ny + ys.start : i * ny + ys.stop : ys.step]
-            rows.append([f + s * m + t * n for f, m, n in zip(cells, lines[a], lines[a + 1], strict=True)])
+            near, far = lines[a], lines[a + 1]
+            rows.append([f + s * m + t * n for f, m, n in zip(cells, near, far)])  # noqa: B905 - strict takes a tenth
         return rows
 
     def _line(self, a: int, low: int, high: int) -> list[float]:

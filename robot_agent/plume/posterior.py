@@ -59,7 +59,8 @@ class Body(NamedTuple):
 def _moments(chart: EventMap, scale: float) -> Moments:
     samples = chart.sample()
     top, _, _ = seen = best(samples)
-    may = [i for i, _, _, high in samples if high > top - BETWEEN / scale]
+    low = top - BETWEEN / scale
+    may = [i for i, _, _, high in samples if high > low]
     crests = [seen, *chart.crests(_box(may[0], may[-1], chart.nx))]
     highest, i, j = max(crests)
     hidden = highest > top + HIDDEN / scale
